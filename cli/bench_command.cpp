@@ -137,7 +137,7 @@ void learn_headings(const BenchArguments& arguments, const nlohmann::json& origi
                     const std::vector<bench::Outcome>& outcomes, std::FILE* out) {
   const std::string& file = arguments.calibrate_headings_file;
   const bench::HeadingScale learned = bench::learn_heading_scale(outcomes, *arguments.options.fix.calibration);
-  write_json(bench::with_heading_scale(read_named_file(file, "calibration-missing"), learned, origin), file);
+  write_json(bench::with_heading_scale(read_named_file(file), learned, origin), file);
   fmt::print(out, "learned from the headings of {} right answers: {}\n", learned.right, file);
 }
 

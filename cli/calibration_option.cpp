@@ -12,7 +12,7 @@ void add_calibration_option(CLI::App& command, std::string& file) {
 }
 
 std::shared_ptr<const Calibration> read_calibration(const std::string& file) {
-  const std::string text = read_named_file(file, "calibration-missing");
+  const std::string text = read_named_file(file);
   return said_of(file, [&] { return std::make_shared<const Calibration>(parse_calibration(text)); });
 }
 

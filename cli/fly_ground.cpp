@@ -21,15 +21,15 @@ namespace {
 
 void require_sendable_frames(const FlyOptions& options, bool over_imagery) {
   if (options.service.base.empty()) {
-    throw InvalidInput("frames-without-service",
+    throw InvalidInput("option-without-effect",
                        "--send frames leaves it to a service to detect roads: name it with --server");
   }
   if (!over_imagery) {
-    throw InvalidInput("no-frames-to-send",
+    throw InvalidInput("option-without-effect",
                        "a map shows roads and no pictures: name imagery with --over, or leave out --send frames");
   }
   if (options.detector != DetectorChoice{}) {
-    throw InvalidInput("detector-elsewhere",
+    throw InvalidInput("option-without-effect",
                        "with --send frames the service detects roads by its own detector: give --detector, --model, "
                        "--orientations and --tree-... to roadfix serve");
   }
@@ -57,7 +57,7 @@ void look_at_imagery(const FlyOptions& options, const MapView& map, Ground& grou
 
 void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& ground) {
   if (options.course != "random" || !options.kidnap.empty()) {
-    throw InvalidInput("recorded-course", "a recorded flight has its course: leave out --course and --kidnap");
+    throw InvalidInput("option-without-effect", "a recorded flight has its course: leave out --course and --kidnap");
   }
   fly::RecordingOptions recorded;
   recorded.border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
@@ -126,7 +126,7 @@ int frames_of_the_longest(const std::vector<fly::Recording>& recordings) {
 IndexRange outage_of(const FlyOptions& options, int steps) {
   const IndexRange outage{options.outage[0], options.outage[1]};
   if (outage.first < std::min(outage.end, steps)) return outage;
-  throw InvalidInput("outage-empty",
+  throw InvalidInput("bad-parameter",
                      fmt::format("--outage {},{} leaves out no frame: FIRST comes before END, and before "
                                  "the flight's {} steps are over",
                                  outage.first, outage.end, steps));
@@ -135,12 +135,12 @@ IndexRange outage_of(const FlyOptions& options, int steps) {
 fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
   const double step = options.kidnap[0];
   if (step != std::floor(step)) {
-    throw InvalidInput("kidnapping-between-steps",
+    throw InvalidInput("bad-parameter",
                        fmt::format("--kidnap at step {} lies between two steps: give a whole number", step));
   }
   const fly::Kidnapping kidnapping{static_cast<int>(step), options.kidnap[1]};
   if (kidnapping.step < steps) return kidnapping;
-  throw InvalidInput("kidnapping-too-late",
+  throw InvalidInput("bad-parameter",
                      fmt::format("--kidnap at step {} comes after the flight, whose {} steps count from 0: give more "
                                  "with --steps",
                                  kidnapping.step, steps));
@@ -160,7 +160,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
   const bool sends_frames = options.send == "frames";
   if (sends_frames) require_sendable_frames(options, !over_a_map);
   if (options.black_unseen && kind != ".csv") {
-    throw InvalidInput("not-recorded",
+    throw InvalidInput("option-without-effect",
                        "--black-unseen is about recorded flights: name one with --over, or leave it out");
   }
   Ground ground;

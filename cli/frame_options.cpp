@@ -22,7 +22,7 @@ std::vector<std::uint8_t> bytes_of(const std::string& path) {
     throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
   }
   require_not_empty(path);
-  const std::string bytes = read_named_file(path, "file-not-found");
+  const std::string bytes = read_named_file(path);
   return {bytes.begin(), bytes.end()};
 }
 

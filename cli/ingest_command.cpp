@@ -164,10 +164,6 @@ void run(const IngestArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   require_name(arguments.map);
   keep_temporary_files_beside(arguments.map);
-  if (arguments.cell_m && !is_map_cell_size(*arguments.cell_m)) {
-    throw InvalidInput("cell-size-unknown", fmt::format("--cell {}: cells are a power of two of metres from {} to {}",
-                                                        *arguments.cell_m, kMinCellM, kMaxCellM));
-  }
   std::vector<SourceRequest> requests;
   for (const std::string& source : arguments.sources) requests.push_back(request_of(arguments, source));
   refuse_without_effect(arguments, requests);

@@ -18,7 +18,7 @@ namespace {
 RoadRules rules_of(const IngestArguments& arguments) {
   RoadRules rules;
   if (!arguments.rules_file.empty()) {
-    rules = RoadRules::parse(read_named_file(arguments.rules_file, "rules-not-found"));
+    rules = RoadRules::parse(read_named_file(arguments.rules_file));
   }
   if (!arguments.classes.empty()) rules.select(arguments.classes);
   if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);
@@ -28,9 +28,11 @@ RoadRules rules_of(const IngestArguments& arguments) {
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
-  command.add_option(
-      "--as", a.meaning,
-      "What the sources are: auto (vectors and what roadfix wrote are roads, other rasters imagery), imagery, roads");
+  command
+      .add_option("--as", a.meaning,
+                  "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"auto", "imagery", "roads"}));
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");
   command.add_option(
@@ -121,7 +123,8 @@ void add_ingest_options(CLI::App& command, IngestArguments& a) {
                   "first by name is used)")
       ->required();
   command.add_option("--map", a.map, "The map file to create or extend")->required();
-  command.add_option("--cell", a.cell_m, "Cell size of a new map: 0.25, 0.5, 1, 2, 4, 8 or 16 m; default: 2");
+  command.add_option("--cell", a.cell_m, "Cell size of a new map in metres; default: 2")
+      ->check(CLI::IsMember({0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0}));
   command.add_option("--zone", a.zone, "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
   add_content_options(command, a);
   add_detector_options(command, a.detector);

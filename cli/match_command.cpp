@@ -51,7 +51,7 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
 
 /// One pose a line; empty lines and a first line of column names are skipped.
 void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
-  std::istringstream in(read_named_file(path, "file-not-found"));
+  std::istringstream in(read_named_file(path));
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     if (++number == 1) line = without_byte_order_mark(line);

@@ -191,7 +191,7 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
 }
 
 Manifest read_manifest(const std::filesystem::path& file) {
-  return parse_manifest(read_named_file(file, "manifest-missing"), file.parent_path());
+  return parse_manifest(read_named_file(file), file.parent_path());
 }
 
 Manifest with_methods(Manifest manifest, std::string_view names) {

@@ -19,8 +19,7 @@ namespace roadfix::bench {
 namespace {
 
 void stop_if_asked(const BenchOptions& options) {
-  if (options.maps.stop.stop_requested())
-    throw Interrupted("bench-stopped", "the bench was stopped; its maps are kept");
+  if (options.maps.stop.stop_requested()) throw Interrupted("work-stopped", "the bench was stopped; its maps are kept");
 }
 
 /// What keypoints are matched with, and what pictures show.
@@ -54,7 +53,7 @@ void draw_picture(const Method& method, const Query& query, const Answer& answer
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
   if (failed || !cv::imwrite(file.string(), picture))
-    throw IoFailure("picture-unwritable", fmt::format("{} cannot be written", file.string()));
+    throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file.string()));
 }
 
 Answer answer_of(const Method& method, const Query& query) {

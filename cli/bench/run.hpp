@@ -23,7 +23,7 @@ struct BenchOptions {
   std::function<void(const std::string& why)> left_out;  ///< told of each set that cannot be asked
 };
 
-/// Of the sets of queries that could be asked. Throws IoFailure "picture-unwritable", Interrupted "bench-stopped" when
+/// Of the sets of queries that could be asked. Throws IoFailure "result-unwritable", Interrupted "work-stopped" when
 /// maps.stop is requested.
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options);
 

@@ -13,11 +13,11 @@
 namespace roadfix::evaluation {
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
-  return parse_frames_csv(read_named_file(csv, "frames-missing"));
+  return parse_frames_csv(read_named_file(csv));
 }
 
 FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
-  const std::string file = read_named_file(folder / frame.file, "file-not-found");
+  const std::string file = read_named_file(folder / frame.file);
   const std::vector<std::uint8_t> bytes(file.begin(), file.end());
   return said_of(frame.file.string(), [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), border); });
 }

@@ -17,7 +17,7 @@ class Counter {
       : campaign_(campaign), total_(campaign.flights.steps * static_cast<std::int64_t>(1 + campaign.filters.size())) {}
 
   void step() {
-    if (campaign_.stop.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
+    if (campaign_.stop.stop_requested()) throw Interrupted("work-stopped", "the flights were stopped");
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(failure_);
     ++done_;

@@ -44,7 +44,7 @@ struct Campaign {
   std::stop_token stop;
 };
 
-/// In the order of the filters. Throws what flights and filters throw, and Interrupted "flight-stopped".
+/// In the order of the filters. Throws what flights and filters throw, and Interrupted "work-stopped".
 std::vector<FilterRuns> run(const Campaign& campaign, const UtmZone& zone);
 
 /// Filters of the library on one map.

@@ -57,7 +57,7 @@ cv::Mat indexed(const cv::Mat& picture) {
 
 [[noreturn]] void fail(const std::string& file, int code) {
   const char* why = GifErrorString(code);
-  throw IoFailure("film-unwritable",
+  throw IoFailure("result-unwritable",
                   fmt::format("{} cannot be written: {}", file, why != nullptr ? why : "unknown reason"));
 }
 

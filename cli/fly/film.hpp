@@ -15,7 +15,7 @@ class Film {
   std::size_t size() const { return frames_.size(); }
   /// Frame i of this film beside frame i of the other; both equally long and high.
   void append_right(const Film& other);
-  /// Repeats for ever. Throws IoFailure "film-unwritable".
+  /// Repeats for ever. Throws IoFailure "result-unwritable".
   void write(const std::string& file, int frames_per_second) const;
 
  private:

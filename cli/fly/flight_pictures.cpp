@@ -32,7 +32,7 @@ FlightPictures::FlightPictures(const MapView& map, const Orthoimage* imagery, co
   std::error_code failed;
   std::filesystem::create_directories(options_.folder, failed);
   if (failed) {
-    throw IoFailure("picture-unwritable",
+    throw IoFailure("result-unwritable",
                     fmt::format("the folder {} cannot be made: {}", options_.folder, failed.message()));
   }
 }
@@ -77,7 +77,7 @@ void FlightPictures::write(const Reel& reel, const cv::Mat& picture, std::int64_
   if (options_.folder.empty()) return;
   const std::string file = fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step);
   if (!cv::imwrite(file, picture)) {
-    throw IoFailure("picture-unwritable", fmt::format("{} cannot be written", file));
+    throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
   }
 }
 

@@ -19,7 +19,7 @@ struct FlightPictureOptions {
 
 class FlightPictures {
  public:
-  /// `imagery` may be null; all must outlive it. Throws IoFailure "picture-unwritable" for the folder.
+  /// `imagery` may be null; all must outlive it. Throws IoFailure "result-unwritable" for the folder.
   FlightPictures(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
                  FlightPictureOptions options);
 

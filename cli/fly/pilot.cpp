@@ -100,7 +100,7 @@ std::vector<GridPoint> survey_lanes(const GridBox& box, double spacing_m) {
 }
 
 std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const UtmZone& zone) {
-  const std::string text = read_named_file(file, "waypoints-missing");
+  const std::string text = read_named_file(file);
   std::vector<GridPoint> points;
   const auto add = [&](const nlohmann::json& place) {
     points.push_back(zone.project({place.at(1).get<double>(), place.at(0).get<double>()}));

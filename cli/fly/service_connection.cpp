@@ -56,7 +56,7 @@ json ServiceConnection::answered(const Send& send, Clock::time_point began) {
   for (std::chrono::milliseconds pause = kFirstPause;; pause = std::min(2 * pause, kLongestPause)) {
     const std::optional<Answer> answer = send(client_);
     if (!may_pass(answer)) return content_of(*answer);
-    if (stop_.stop_requested()) throw Interrupted("flight-stopped", "the flights were stopped");
+    if (stop_.stop_requested()) throw Interrupted("work-stopped", "the flights were stopped");
     if (Clock::now() + pause > began + patience_) {
       throw IoFailure(
           "service-silent",

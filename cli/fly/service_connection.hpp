@@ -20,7 +20,7 @@ class ServiceConnection {
   explicit ServiceConnection(const ServicePlan& plan);
 
   /// Sends a request until it is answered, or patience is at its end. Null for an empty body. Throws InvalidInput
-  /// ("service-refused"), IoFailure ("service-silent") and Interrupted ("flight-stopped").
+  /// ("service-refused"), IoFailure ("service-silent") and Interrupted ("work-stopped").
   nlohmann::json ask(const Send& send);
 
   /// For all answers so far.

@@ -7,7 +7,7 @@
 namespace roadfix::fly {
 
 /// By the service's own filter, whatever the name. Throws, when used, InvalidInput ("service-refused" with its reason,
-/// "service-answer-unreadable"), IoFailure ("service-silent") and Interrupted ("flight-stopped").
+/// "service-answer-unreadable"), IoFailure ("service-silent") and Interrupted ("work-stopped").
 LocalizerFactory service_localizers(const ServicePlan& plan);
 
 }  // namespace roadfix::fly

@@ -27,7 +27,7 @@ class NeuralRoadDetector : public RoadDetector {
  public:
   /// Loads `model` (ONNX, input 1 x 3 x H x W, output 1 x 1 x H/stride x W/stride) and the JSON beside it.
   /// InvalidInput: "model-missing", "model-unreadable" (not an ONNX that OpenCV knows), "model-description",
-  /// "model-shape" (another input or output), "model-checksum", "orientations-unknown".
+  /// "model-shape" (another input or output), "model-checksum".
   explicit NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options = {});
   ~NeuralRoadDetector() override;
 

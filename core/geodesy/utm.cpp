@@ -14,9 +14,10 @@ using GeographicLib::UTMUPS;
 
 void require_on_earth(LatLon p) {
   if (!(std::abs(p.lat_deg) <= 90.0) || !(std::abs(p.lon_deg) <= 540.0)) {
-    throw InvalidInput("position-out-of-range", fmt::format("latitude {} longitude {} is not a position: latitude must "
-                                                            "lie within -90..90 and longitude within -180..180 degrees",
-                                                            p.lat_deg, p.lon_deg));
+    throw InvalidInput("parameter-out-of-range",
+                       fmt::format("latitude {} longitude {} is not a position: latitude must "
+                                   "lie within -90..90 and longitude within -180..180 degrees",
+                                   p.lat_deg, p.lon_deg));
   }
 }
 

@@ -101,7 +101,7 @@ Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decisi
 PoseRegion search_region(const MapView& map, const Prior& prior, const FixOptions& options) {
   PoseRegion region = region_of(map, prior);
   if (!(options.confidence > 0.0 && options.confidence < 1.0)) {
-    throw InvalidInput("confidence-out-of-range",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("the confidence is {}: give a value between 0 and 1", options.confidence));
   }
   require_scale_range(options.search.scale_range);

@@ -36,7 +36,7 @@ bool is_at(const FixMode& mode, GridPoint place, const UtmZone& zone, double cel
 
 Localizability localizability(const MapView& map, const LocalizabilityQuery& query) {
   if (!(query.footprint_m >= kSmallestFootprintM && query.footprint_m <= kLargestFootprintM)) {
-    throw InvalidInput("footprint-out-of-range",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("the footprint is {} m: give {} to {} m", query.footprint_m, kSmallestFootprintM,
                                    kLargestFootprintM));
   }

@@ -36,7 +36,7 @@ struct Localizability {
 
 /// Cuts the footprint out of the map, north up, makes it as bad as the quality says (always with the same generator),
 /// and looks for it around the place at every heading. Throws what locate() throws, and InvalidInput
-/// "footprint-out-of-range".
+/// "parameter-out-of-range".
 Localizability localizability(const MapView& map, const LocalizabilityQuery& query);
 
 }  // namespace roadfix

@@ -24,7 +24,7 @@ void require_usable(const FeatureMap& features) {
     throw InvalidInput("feature-map-empty", "the feature map has no cells: give at least one row and one column");
   }
   if (!std::isfinite(features.cell_m) || features.cell_m <= 0.0) {
-    throw InvalidInput("cell-size-out-of-range",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("the feature map's cell size is {} m: give the side of a cell on the ground, in "
                                    "metres above 0",
                                    features.cell_m));
@@ -103,7 +103,7 @@ FeatureMap in_cells_of(const MapView& map, const FeatureMap& given) {
 
 void require_scale_range(double range) {
   if (range >= 0.0 && range <= kMaxScaleRange) return;
-  throw InvalidInput("scale-range-out-of-range",
+  throw InvalidInput("parameter-out-of-range",
                      fmt::format("the scale range is {}: give a share from 0 to {}", range, kMaxScaleRange));
 }
 

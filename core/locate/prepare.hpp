@@ -13,7 +13,7 @@ namespace roadfix {
 /// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
-/// Throws InvalidInput ("scale-range-out-of-range") unless it is a share from 0 to kMaxScaleRange.
+/// Throws InvalidInput ("parameter-out-of-range") unless it is a share from 0 to kMaxScaleRange.
 void require_scale_range(double range);
 
 /// Throws LimitExceeded ("search-area-too-large").

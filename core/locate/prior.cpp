@@ -15,7 +15,7 @@ namespace {
 
 GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
   if (!std::isfinite(circle.radius_m) || circle.radius_m <= 0.0) {
-    throw InvalidInput("prior-radius-out-of-range",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("the radius of the prior is {} m: give metres above 0", circle.radius_m));
   }
   return {zone.project(circle.centre), circle.radius_m};
@@ -24,7 +24,7 @@ GridCircle circle_in(const UtmZone& zone, const GeoCircle& circle) {
 std::vector<GridQuad> quads_in(const MapView& map, const GeoBox& box) {
   if (box.empty()) {
     throw InvalidInput(
-        "prior-box-empty",
+        "parameter-out-of-range",
         fmt::format("the box of the prior runs from {}, {} to {}, {}: the first corner must lie south and "
                     "west of the second",
                     box.south_west.lat_deg, box.south_west.lon_deg, box.north_east.lat_deg, box.north_east.lon_deg));
@@ -93,7 +93,7 @@ PoseRegion region_of(const MapView& map, const Prior& prior) {
     const double half_deg = prior.heading->half_width.degrees();
     if (!(half_deg >= 0.0) || !std::isfinite(half_deg) || !(std::abs(prior.heading->centre.degrees()) <= 360.0)) {
       throw InvalidInput(
-          "prior-heading-out-of-range",
+          "parameter-out-of-range",
           "the heading range must be given as a heading of -360 to 360 and half a width of 0 to 180 degrees");
     }
     // Grid north turns across the region, and one range of grid headings serves all of it.

@@ -43,12 +43,12 @@ std::optional<std::string> read_file(const std::filesystem::path& file) {
   return bytes_of(file, reason);
 }
 
-std::string read_named_file(const std::filesystem::path& file, const char* code) {
+std::string read_named_file(const std::filesystem::path& file) {
   int reason = 0;
   std::optional<std::string> bytes = bytes_of(file, reason);
   if (bytes) return *std::move(bytes);
-  throw NotFound(code, fmt::format("{} cannot be read ({}): check its name and the permission to read it",
-                                   file.string(), std::generic_category().message(reason)));
+  throw NotFound("file-not-found", fmt::format("{} cannot be read ({}): check its name and the permission to read it",
+                                               file.string(), std::generic_category().message(reason)));
 }
 
 std::filesystem::path behind_links(std::filesystem::path path) {

@@ -12,8 +12,9 @@ namespace roadfix {
 /// All bytes of a file; nullopt where it cannot be read, as a folder cannot.
 std::optional<std::string> read_file(const std::filesystem::path& file);
 
-/// The same of a file that has to be there. Throws NotFound `code`, which tells why the system does not give it.
-std::string read_named_file(const std::filesystem::path& file, const char* code);
+/// The same of a file that has to be there. Throws NotFound "file-not-found", which tells why the system does not give
+/// it.
+std::string read_named_file(const std::filesystem::path& file);
 
 /// What a link leads to, though it may not be there.
 std::filesystem::path behind_links(std::filesystem::path path);

@@ -26,7 +26,7 @@ TEST(BenchCommand, KeepsItsFiguresWhereTheyAreTooFewToLearnFrom) {
   EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --json " + manifest).err,
               HasSubstr("target-is-source"));
   EXPECT_THAT(run_program(folder.path(), "bench " + manifest + " --calibrate-headings nowhere.json").err,
-              HasSubstr("calibration-missing"));
+              HasSubstr("file-not-found"));
   for (const char* option : {" --curves ", " --pictures "}) {
     EXPECT_THAT(run_program(folder.path(), "bench " + manifest + option + manifest).err,
                 HasSubstr("[result-unwritable]"));

@@ -289,6 +289,16 @@ TEST_F(MapCommands, IngestRefusesOptionsThatDoNothingWithItsSources) {
   EXPECT_EQ(roadfix(ingest + " " + lines + " --width 6 --nodata-color white").code, 0) << "one for each";
 }
 
+TEST_F(MapCommands, IngestKnowsWhatSourcesAndCellsOfAMapMayBe) {
+  const std::string ingest = "ingest " + path.string() + " --map " + (folder / "n.gpkg").string();
+  const ProgramResult meaning = roadfix(ingest + " --as road");
+  EXPECT_EQ(meaning.code, 2);
+  EXPECT_THAT(meaning.err, HasSubstr("{auto,imagery,roads}"));
+  const ProgramResult cells = roadfix(ingest + " --cell 3");
+  EXPECT_EQ(cells.code, 2);
+  EXPECT_THAT(cells.err, HasSubstr("{0.25,0.5,1,2,4,8,16}"));
+}
+
 TEST_F(MapCommands, ADryRunRefusesWhatTheIngestWouldRefuse) {
   const std::string map = folder / "n.gpkg";
   const std::string lines = folder / "roads.geojson";

@@ -122,13 +122,13 @@ TEST_F(Vehicles, LeaveNoTracksBehindWhereTheyFailOrAreStopped) {
     };
     return testing::code_of([&] { flown(running->port()); });
   };
-  EXPECT_EQ(code_when([] { throw IoFailure("picture-unwritable", "of the first vehicle"); }), "picture-unwritable");
+  EXPECT_EQ(code_when([] { throw IoFailure("result-unwritable", "of the first vehicle"); }), "result-unwritable");
   EXPECT_GT(active, 0U);
   EXPECT_EQ(tracks(), 0U);
   std::stop_source stop;
   campaign_.stop = stop.get_token();
   plan_.stop = stop.get_token();
-  EXPECT_EQ(code_when([&] { stop.request_stop(); }), "flight-stopped");
+  EXPECT_EQ(code_when([&] { stop.request_stop(); }), "work-stopped");
   EXPECT_EQ(tracks(), 0U);
 }
 

@@ -53,12 +53,12 @@ Driver driver_of(ExportFormat format, const MapInfo& info) {
       }
       return {"PNG", PixelKind::kPicture, options};
     case ExportFormat::kMbTiles:
-      options.SetNameValue("TILE_FORMAT", "PNG");
-      options.SetNameValue("NAME", "road probability");
-      options.SetNameValue("DESCRIPTION", description_of(info).c_str());
-      return {"MBTiles", PixelKind::kPicture, options};
+      break;
   }
-  throw InvalidInput("format-unknown", "no such export format");
+  options.SetNameValue("TILE_FORMAT", "PNG");
+  options.SetNameValue("NAME", "road probability");
+  options.SetNameValue("DESCRIPTION", description_of(info).c_str());
+  return {"MBTiles", PixelKind::kPicture, options};
 }
 
 GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
@@ -168,7 +168,7 @@ void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
   CPLErrorReset();
   const bool copied = written_by(*driver, kind, picture.unfinished(), monitor);
   monitor.source.rethrow_failure();
-  if (monitor.stop.stop_requested()) throw Interrupted("export-stopped", "the export was stopped; nothing was written");
+  if (monitor.stop.stop_requested()) throw Interrupted("work-stopped", "the export was stopped; nothing was written");
   if (!copied || CPLGetLastErrorType() >= CE_Failure) {  // of MBTiles, the driver itself gets over some
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "

@@ -26,7 +26,7 @@ struct ExportOptions {
 
 /// Written block by block beside the target and renamed at the end: whatever happens, `target` is whole or as it was
 /// before. Throws InvalidInput ("region-outside-map", "cell-size-not-in-map", "map-has-no-cells"), LimitExceeded
-/// ("picture-too-large": PNG above 2^29 pixels), Interrupted ("export-stopped") or IoFailure ("export-failed").
+/// ("picture-too-large": PNG above 2^29 pixels), Interrupted ("work-stopped") or IoFailure ("export-failed").
 /// `progress` counts thousandths.
 void export_map(const MapReader& map, const std::filesystem::path& target, const ExportOptions& options,
                 const OnProgress& progress = {}, std::stop_token stop = {});

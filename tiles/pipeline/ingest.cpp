@@ -20,7 +20,7 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
 
 [[noreturn]] void stopped(const std::string& source) {
   throw Interrupted(
-      "ingest-stopped",
+      "work-stopped",
       fmt::format("stopped while ingesting '{}'; finished blocks are kept: run the same command again to go "
                   "on",
                   source));

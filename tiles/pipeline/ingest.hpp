@@ -46,8 +46,8 @@ std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
 
 /// Carries the source into the map or goes on where an earlier call was stopped, and measures which sources of its
 /// ground lie beside the others (source_shift.hpp). `record.fingerprint` must tell everything that changes the cells.
-/// Throws Interrupted ("ingest-stopped", "fusion-stopped") when asked to stop, and whatever source and writer throw;
-/// what was finished until then stays.
+/// Throws Interrupted "work-stopped" when asked to stop, and whatever source and writer throw; what was finished
+/// until then stays.
 IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWriter& writer,
                     const IngestOptions& options);
 

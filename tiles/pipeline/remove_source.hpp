@@ -16,7 +16,7 @@ struct RemoveReport {
 };
 
 /// Takes the source out as MapWriter::remove_source() does, which says what it throws, and measures the others anew: it
-/// may have been what they lay beside. Throws Interrupted "fusion-stopped"; can be repeated then.
+/// may have been what they lay beside. Throws Interrupted "work-stopped"; can be repeated then.
 RemoveReport remove_source(MapWriter& writer, const std::string& source, const OnProgress& on_fusing,
                            const OnProgress& on_shifts, const std::stop_token& stop);
 

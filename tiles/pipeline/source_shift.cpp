@@ -165,9 +165,9 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
   tell();
   for (const std::string& source : sources) {
     if (stop.stop_requested()) {
-      throw Interrupted("fusion-stopped", fmt::format("stopped with {} of {} sources compared with the others. Repeat "
-                                                      "the command to go on",
-                                                      done, total));
+      throw Interrupted("work-stopped", fmt::format("stopped with {} of {} sources compared with the others. Repeat "
+                                                    "the command to go on",
+                                                    done, total));
     }
     try {
       const auto [copies, others] = witnesses.around(source);

@@ -31,7 +31,7 @@ struct ShiftReport {
 
 /// Measures these sources in force anew, each beside those that are no copies of it, and tells the map. Of one that
 /// cannot be measured, since evidence is damaged, the map keeps what it knew. `progress` counts sources, where there
-/// are several. Throws Interrupted "fusion-stopped", and tells the map nothing then: the next command measures all.
+/// are several. Throws Interrupted "work-stopped", and tells the map nothing then: the next command measures all.
 ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources, const OnProgress& progress = {},
                            const std::stop_token& stop = {});
 

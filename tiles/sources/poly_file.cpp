@@ -108,7 +108,7 @@ std::unique_ptr<OGRMultiPolygon> parse_poly(const std::string& text, const std::
 }
 
 std::unique_ptr<OGRMultiPolygon> read_poly_file(const std::string& path) {
-  return parse_poly(read_named_file(path, "file-not-found"), path);
+  return parse_poly(read_named_file(path), path);
 }
 
 }  // namespace roadfix

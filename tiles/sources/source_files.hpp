@@ -12,7 +12,7 @@ namespace roadfix {
 /// What the user says a source is. kAuto: vectors, maps, rasters of roads that roadfix wrote and copies of either are
 /// roads, other rasters imagery.
 enum class SourceMeaning { kAuto, kImagery, kRoads };
-/// "auto", "imagery", "roads". Throws InvalidInput "source-meaning-unknown".
+/// Of "auto", "imagery" or "roads".
 SourceMeaning parse_meaning(std::string_view text);
 
 struct SourceFiles {

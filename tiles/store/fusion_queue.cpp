@@ -107,7 +107,7 @@ void FusionQueue::drain(const OnProgress& progress, const std::stop_token& stop)
   if (progress) progress(done, total);
   while (done < total) {
     if (stop.stop_requested()) {
-      throw Interrupted("fusion-stopped",
+      throw Interrupted("work-stopped",
                         fmt::format("{}: stopped with {} of {} tiles fused. Repeat the command to go on",
                                     map_.path().string(), done, total));
     }

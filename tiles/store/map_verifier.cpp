@@ -60,7 +60,7 @@ class Verifier {
 
   void report(std::string code, std::string what) { verdict_.problems.push_back({std::move(code), std::move(what)}); }
 
-  static Interrupted stopped() { return {"verify-stopped", "verify was stopped before it had seen every tile"}; }
+  static Interrupted stopped() { return {"work-stopped", "verify was stopped before it had seen every tile"}; }
 
   void step() {
     if (stop_.stop_requested()) throw stopped();

@@ -67,14 +67,14 @@ void write_frames(const std::string& picture, const std::string& folder, const W
     cv::Mat bgr;
     cv::cvtColor(cut_frame(picture, placement, poses[i], settings.footprint_m), bgr, cv::COLOR_RGB2BGR);
     if (!cv::imwrite(folder + "/" + name, bgr)) {
-      throw IoFailure("world-unwritable", fmt::format("{}/{}: cannot be written", folder, name));
+      throw IoFailure("result-unwritable", fmt::format("{}/{}: cannot be written", folder, name));
     }
     const LatLon at = placement.zone.unproject(poses[i].position);
     const Angle heading = placement.zone.true_from_grid(poses[i].heading, poses[i].position);
     table << fmt::format("{},{:.8f},{:.8f},{:.4f},{:g}\n", name, at.lat_deg, at.lon_deg, heading.compass_degrees(),
                          placement.gsd_m);
   }
-  if (!table.flush()) throw IoFailure("world-unwritable", fmt::format("{}/frames.csv: cannot be written", folder));
+  if (!table.flush()) throw IoFailure("result-unwritable", fmt::format("{}/frames.csv: cannot be written", folder));
 }
 
 }  // namespace roadfix::world

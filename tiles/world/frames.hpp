@@ -20,7 +20,7 @@ std::vector<GridPose> draw_poses(const WorldSettings& settings, const Placement&
 cv::Mat3b cut_frame(const std::string& picture, const Placement& placement, const GridPose& pose, double footprint_m);
 
 /// FOLDER/frame_01.png ... and FOLDER/frames.csv: file, lat, lon, heading_deg (from true north), gsd_m. The folder is
-/// there. Throws IoFailure "world-unwritable", Interrupted.
+/// there. Throws IoFailure "result-unwritable", Interrupted.
 void write_frames(const std::string& picture, const std::string& folder, const WorldSettings& settings,
                   const Placement& placement, const std::vector<GridPose>& poses, const std::stop_token& stop);
 

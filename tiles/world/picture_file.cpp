@@ -13,7 +13,7 @@ namespace {
 constexpr int kFileTile = 256;
 
 [[noreturn]] void fail(const std::filesystem::path& path, const std::string& reason) {
-  throw IoFailure("world-unwritable", fmt::format("{}: cannot be written ({})", path.string(), reason));
+  throw IoFailure("result-unwritable", fmt::format("{}: cannot be written ({})", path.string(), reason));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace roadfix::world {
 /// The file appears under its name when finish() returns; without it nothing is left behind.
 class PictureFile {
  public:
-  /// Throws IoFailure "world-unwritable", as the others do.
+  /// Throws IoFailure "result-unwritable", as the others do.
   PictureFile(const std::string& path, const Placement& placement);
 
   /// Red, green, blue; `corner` is the tile's place in the picture.

@@ -98,7 +98,7 @@ int write_road_truth(const std::string& path, const std::vector<Street>& streets
     }
   }
   out << "\n]}\n";
-  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", path));
+  if (!out.flush()) throw IoFailure("result-unwritable", fmt::format("{}: cannot be written", path));
   return count;
 }
 

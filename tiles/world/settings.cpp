@@ -24,13 +24,14 @@ bool within(double value, double low, double high) { return value >= low && valu
 
 void check(const WorldSettings& s) {
   if (!within(s.width_m, kMinSizeM, kMaxSizeM) || !within(s.height_m, kMinSizeM, kMaxSizeM)) {
-    throw InvalidInput("world-size",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("a world of {:g} x {:g} km cannot be rendered: choose {:g} to {:g} km",
                                    s.width_m / 1000.0, s.height_m / 1000.0, kMinSizeM / 1000.0, kMaxSizeM / 1000.0));
   }
   if (!within(s.gsd_m, kMinGsdM, kMaxGsdM)) {
-    throw InvalidInput("world-gsd", fmt::format("pixels of {:g} m cannot be rendered: choose {:g} to {:g} m", s.gsd_m,
-                                                kMinGsdM, kMaxGsdM));
+    throw InvalidInput(
+        "parameter-out-of-range",
+        fmt::format("pixels of {:g} m cannot be rendered: choose {:g} to {:g} m", s.gsd_m, kMinGsdM, kMaxGsdM));
   }
   if (s.land == Land::kCountry && !s.roads.empty()) {
     throw InvalidInput("world-land-roads",
@@ -39,11 +40,12 @@ void check(const WorldSettings& s) {
                                    s.roads));
   }
   if (!within(s.collapsed_share, 0.0, 1.0)) {
-    throw InvalidInput("world-share", fmt::format("a share of {:g} of the buildings cannot collapse: choose 0 to 1",
-                                                  s.collapsed_share));
+    throw InvalidInput(
+        "parameter-out-of-range",
+        fmt::format("a share of {:g} of the buildings cannot collapse: choose 0 to 1", s.collapsed_share));
   }
   if (s.frames < 0 || s.frames > kMaxFrames || !within(s.footprint_m, kMinFootprintM, kMaxSizeM)) {
-    throw InvalidInput("world-frames",
+    throw InvalidInput("parameter-out-of-range",
                        fmt::format("{} frames of {:g} m cannot be cut: choose 0 to {} frames of {:g} to "
                                    "{:g} m",
                                    s.frames, s.footprint_m, kMaxFrames, kMinFootprintM, kMaxSizeM));

@@ -31,8 +31,7 @@ struct WorldSettings {
 
 inline constexpr LatLon kDefaultCentre{37.7640, 38.2760};
 
-/// Throws InvalidInput ("world-size", "world-gsd", "world-land-roads", "world-share", "world-frames",
-/// "world-too-small-for-frames").
+/// Throws InvalidInput ("parameter-out-of-range", "world-land-roads", "world-too-small-for-frames").
 void check(const WorldSettings& settings);
 
 /// Pixels of both pictures on the plane of their zone.

@@ -19,14 +19,14 @@ using nlohmann::ordered_json;
 void write_json(const fs::path& file, const ordered_json& json) {
   std::ofstream out(file);
   out << json.dump(2, ' ', false, ordered_json::error_handler_t::replace) << '\n';
-  if (!out.flush()) throw IoFailure("world-unwritable", fmt::format("{}: cannot be written", file.string()));
+  if (!out.flush()) throw IoFailure("result-unwritable", fmt::format("{}: cannot be written", file.string()));
 }
 
 void make_folder(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (!error) return;
-  throw IoFailure("world-unwritable",
+  throw IoFailure("result-unwritable",
                   fmt::format("'{}': no folder can be made there ({})", folder.string(), error.message()));
 }
 
@@ -34,7 +34,7 @@ void remove_file(const fs::path& file) {
   std::error_code error;
   fs::remove(file, error);
   if (!error) return;
-  throw IoFailure("world-unwritable", fmt::format("{}: cannot be replaced ({})", file.string(), error.message()));
+  throw IoFailure("result-unwritable", fmt::format("{}: cannot be replaced ({})", file.string(), error.message()));
 }
 
 bool is_frame(const fs::path& file) {
@@ -89,7 +89,7 @@ void write_report(const WorldReport& report, const WorldSettings& settings, cons
 
 void throw_if_stopped(const std::stop_token& stop) {
   if (!stop.stop_requested()) return;
-  throw Interrupted("world-stopped",
+  throw Interrupted("work-stopped",
                     "stopped: the folder holds an unfinished world, without world.json. Start the same command again");
 }
 

@@ -84,7 +84,7 @@ TEST_F(Campaigns, StopWhenTheyAreAskedTo) {
   std::stop_source stop;
   campaign.stop = stop.get_token();
   stop.request_stop();
-  EXPECT_EQ(code_of([&] { run(campaign, map.zone); }), "flight-stopped");
+  EXPECT_EQ(code_of([&] { run(campaign, map.zone); }), "work-stopped");
 }
 
 TEST_F(Campaigns, EndAllFlightsWhereOneFails) {
@@ -147,7 +147,7 @@ TEST(FilterNames, RunFromThePapersFilterToTheDefaultAndOthersAreRefused) {
 TEST(Films, ThatCannotBeWrittenSaySo) {
   Film film;
   film.add(cv::Mat(20, 20, CV_8UC3, cv::Scalar(10, 200, 30)));
-  EXPECT_EQ(code_of([&] { film.write("/nowhere/at/all.gif", 8); }), "film-unwritable");
+  EXPECT_EQ(code_of([&] { film.write("/nowhere/at/all.gif", 8); }), "result-unwritable");
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ TEST(Pilots, WaypointsComeFromALineOfGeoJsonAndBadFilesAreRefused) {
   EXPECT_EQ(code_of([&] { read(R"({"features":[]})"); }), "waypoints-unreadable");
   EXPECT_EQ(code_of([&] { read(R"({"features":[{"geometry":{"type":"Point","coordinates":[21]}}]})"); }),
             "waypoints-unreadable");
-  EXPECT_EQ(code_of([&] { read_waypoints(folder / "none", zone); }), "waypoints-missing");
+  EXPECT_EQ(code_of([&] { read_waypoints(folder / "none", zone); }), "file-not-found");
 }
 
 TEST(Area, KeepsTheMiddleOfAMapAndLeavesTheRestUnobserved) {

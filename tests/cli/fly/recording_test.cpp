@@ -148,7 +148,7 @@ TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
   EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
   EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "file-not-found");
-  EXPECT_EQ(code_of([&] { read_recordings(folder / "none.csv", zone, options); }), "frames-missing");
+  EXPECT_EQ(code_of([&] { read_recordings(folder / "none.csv", zone, options); }), "file-not-found");
 }
 
 }  // namespace

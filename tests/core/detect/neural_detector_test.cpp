@@ -50,9 +50,9 @@ class NeuralDetector : public ::testing::Test {
     return refusal(model(description, network));
   }
 
-  static std::string refusal(const fs::path& path, const NeuralOptions& options = {}) {
+  static std::string refusal(const fs::path& path) {
     try {
-      const NeuralRoadDetector detector(path, options);
+      const NeuralRoadDetector detector(path);
     } catch (const InvalidInput& error) {
       return error.code();
     }
@@ -289,7 +289,6 @@ TEST_F(NeuralDetector, RefusesWhatItCannotRun) {
   json other = tiny_description();
   other["fnv1a64"] = "0000000000000000";
   EXPECT_EQ(refusal(other), "model-checksum");
-  EXPECT_EQ(refusal(model(tiny_description()), {3}), "orientations-unknown");
   fs::remove(folder_ / "model.json");
   EXPECT_EQ(refusal(folder_ / "model.onnx"), "model-description");
 }

@@ -49,8 +49,8 @@ TEST(UtmZone, ConvergenceIsTrueMinusGridHeading) {
 TEST(UtmZone, RefusesPolesAndNonsense) {
   const auto refusal_of = [](LatLon point) { return testing::code_of([&] { UtmZone::containing(point); }); };
   for (const double pole : {89.0, -81.0}) EXPECT_EQ(refusal_of({pole, 0.0}), "position-in-polar-region") << pole;
-  EXPECT_EQ(refusal_of({std::numeric_limits<double>::quiet_NaN(), 0.0}), "position-out-of-range");
-  EXPECT_EQ(refusal_of({91.0, 0.0}), "position-out-of-range");
+  EXPECT_EQ(refusal_of({std::numeric_limits<double>::quiet_NaN(), 0.0}), "parameter-out-of-range");
+  EXPECT_EQ(refusal_of({91.0, 0.0}), "parameter-out-of-range");
   const UtmZone zone = UtmZone::containing({40.0, 39.0});
   EXPECT_EQ(testing::code_of([&] { zone.project({40.0, -140.0}); }), "position-outside-zone");
   EXPECT_FALSE(zone.project_if_defined({40.0, -140.0}));

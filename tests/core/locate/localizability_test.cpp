@@ -141,7 +141,7 @@ TEST(Localizability, OfAPlaceOutsideTheMapIsRefusedWithoutAWordOfPriors) {
 
 TEST(Localizability, RefusesAFootprintOfNoSize) {
   const MapView view = view_of(testing::street_map(21, square(200)));
-  EXPECT_EQ(testing::code_of([&] { localizability(view, centre_of(view, 0.0)); }), "footprint-out-of-range");
+  EXPECT_EQ(testing::code_of([&] { localizability(view, centre_of(view, 0.0)); }), "parameter-out-of-range");
 }
 
 }  // namespace

@@ -225,7 +225,7 @@ TEST_F(Track, LearnsAnErrorOfTheAltitudeThatItIsToldToExpect) {
   EXPECT_EQ(untold.clusters[0].scale, 1.0);
   TrackSettings impossible = settings();
   impossible.vehicle.scale_range = 0.5;
-  EXPECT_EQ(code_of([&] { Tracker(view_, impossible); }), "scale-range-out-of-range");
+  EXPECT_EQ(code_of([&] { Tracker(view_, impossible); }), "parameter-out-of-range");
 }
 
 TEST_F(Track, BeginsAnewAfterALongGap) {

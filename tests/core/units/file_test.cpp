@@ -46,17 +46,17 @@ TEST(ReadNamedFile, TellsWhyAFileCannotBeRead) {
   const testing::TemporaryFolder folder;
   const auto refusal = [](const std::filesystem::path& file) {
     try {
-      read_named_file(file, "code-of-file");
+      read_named_file(file);
     } catch (const NotFound& error) {
       return error.code() + ": " + error.what();
     }
     return std::string("none");
   };
-  EXPECT_THAT(refusal(folder / "none"), AllOf(StartsWith("code-of-file: " + (folder / "none").string()),
+  EXPECT_THAT(refusal(folder / "none"), AllOf(StartsWith("file-not-found: " + (folder / "none").string()),
                                               HasSubstr("No such file"), HasSubstr("check its name")));
   EXPECT_THAT(refusal(folder.path()), HasSubstr("directory"));
   std::ofstream(folder / "file") << "bytes";
-  EXPECT_EQ(read_named_file(folder / "file", "code-of-file"), "bytes");
+  EXPECT_EQ(read_named_file(folder / "file"), "bytes");
 }
 
 }  // namespace

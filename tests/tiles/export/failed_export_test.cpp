@@ -29,7 +29,7 @@ TEST_F(MapExport, RefusesWhatCannotBeExportedAndLeavesNothingBehind) {
   EXPECT_EQ(code_of(folder / "no/such/folder/out.tif", {}), "export-failed");
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_EQ(code_of(folder / "out.tif", {}, stop.get_token()), "export-stopped");
+  EXPECT_EQ(code_of(folder / "out.tif", {}, stop.get_token()), "work-stopped");
   EXPECT_EQ(files(), 1U);
   { MapWriter(folder / "empty.gpkg", settings_37n()); }
   EXPECT_THROW(export_map(MapReader(folder / "empty.gpkg"), folder / "out.tif", {}), InvalidInput);

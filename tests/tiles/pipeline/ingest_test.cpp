@@ -128,7 +128,7 @@ TEST_F(IngestTest, StoppedAnywhereItGoesOnWhereItWas) {
       run(part, "parts.gpkg", 2, part.stop());
       FAIL() << "not stopped";
     } catch (const Interrupted& error) {
-      EXPECT_EQ(error.code(), "ingest-stopped");
+      EXPECT_EQ(error.code(), "work-stopped");
       EXPECT_THAT(error.what(), ::testing::HasSubstr("run the same command again"));
     }
     EXPECT_LE(part.reads(), 5 + 4) << "more than the blocks in flight";

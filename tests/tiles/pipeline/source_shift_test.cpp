@@ -359,7 +359,7 @@ TEST_F(MeasuredShifts, OfThoseBesideAReplacedSourceAreMeasuredAnewThoughFusingIt
   EXPECT_EQ(testing::code_of([&] {
               ingest(source, elsewhere, writer, {.replace = true, .on_fusing = stop_at_once, .stop = stop.get_token()});
             }),
-            "fusion-stopped");
+            "work-stopped");
   EXPECT_TRUE(ingest(source, elsewhere, writer, {.replace = true}).shifts.beside.empty());
   ASSERT_EQ(sources().size(), 2U);
   for (const SourceStatus& status : sources()) EXPECT_FALSE(status.shift) << status.record.name;

@@ -64,7 +64,7 @@ TEST(InterruptedWriter, FusingCanBeStoppedAndRepeated) {
   const auto stop_midway = [&](std::int64_t done, std::int64_t) {
     if (done > 0) stop.request_stop();
   };
-  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { writer.finish_source("a", stop_midway, stop.get_token()); }), "work-stopped");
   EXPECT_GT(MapReader(path).info().pending, 0);
   writer.finish_source("a");
   EXPECT_EQ(MapReader(path).info().pending, 0);
@@ -81,7 +81,7 @@ TEST(InterruptedWriter, RemovingASourceCanBeStoppedAndRepeated) {
   ingest(writer, {"b", 2, some_blocks(2, 1)});
   std::stop_source stopped;
   stopped.request_stop();
-  EXPECT_EQ(code_of([&] { writer.remove_source("b", {}, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { writer.remove_source("b", {}, stopped.get_token()); }), "work-stopped");
   EXPECT_GT(MapReader(path).info().pending, 0);
   EXPECT_FALSE(writer.remove_source("b")) << "it has gone already";
   EXPECT_EQ(MapReader(path).info().pending, 0);
@@ -127,19 +127,19 @@ TEST(InterruptedWriter, WhatWasReplacedOrRemovedCountsWithItsErrorUntilNoTileSho
   put(40.0, 1, false, {});
   std::stop_source stopped;
   stopped.request_stop();
-  EXPECT_EQ(code_of([&] { put(2.0, 2, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { put(2.0, 2, true, stopped.get_token()); }), "work-stopped");
   EXPECT_EQ(error_m(), 40.0);
-  EXPECT_EQ(code_of([&] { put(3.0, 3, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { put(3.0, 3, true, stopped.get_token()); }), "work-stopped");
   EXPECT_EQ(error_m(), 40.0) << "no tile shows the one between, and all show the first";
   EXPECT_EQ(MapReader(path).info().error_of_removed_m, 40.0);
   writer.finish_source("a");
   EXPECT_EQ(error_m(), 3.0);
   EXPECT_EQ(MapReader(path).info().error_of_removed_m, 0.0);
-  EXPECT_EQ(code_of([&] { put(2.0, 4, true, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { put(2.0, 4, true, stopped.get_token()); }), "work-stopped");
   EXPECT_EQ(error_m(), 3.0) << "no tile shows the first any more";
   writer.finish_source("a");
   put(4.0, 5, true, {});
-  EXPECT_EQ(code_of([&] { writer.remove_source("a", {}, stopped.get_token()); }), "fusion-stopped");
+  EXPECT_EQ(code_of([&] { writer.remove_source("a", {}, stopped.get_token()); }), "work-stopped");
   EXPECT_EQ(error_m(), 4.0);
   writer.remove_source("a");
   EXPECT_EQ(error_m(), 2.5);

@@ -87,10 +87,10 @@ TEST(WorldFiles, KeepsNoFramesOfTheWorldThatWasRenderedThereBefore) {
 TEST(WorldFiles, SaysSoWhenItCannotBeWritten) {
   const TemporaryFolder folder;
   std::ofstream(folder / "file") << "in the way";
-  EXPECT_EQ(failure(small_settings(), folder / "file"), "world-unwritable");
-  EXPECT_EQ(failure(small_settings(), ""), "world-unwritable");
+  EXPECT_EQ(failure(small_settings(), folder / "file"), "result-unwritable");
+  EXPECT_EQ(failure(small_settings(), ""), "result-unwritable");
   std::ofstream(folder / "frames") << "in the way of the frames";
-  EXPECT_EQ(failure(small_settings(), folder.path()), "world-unwritable");
+  EXPECT_EQ(failure(small_settings(), folder.path()), "result-unwritable");
 }
 
 }  // namespace

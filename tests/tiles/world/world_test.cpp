@@ -196,12 +196,12 @@ TEST(World, RefusesSettingsThatCannotBeMet) {
     change(settings);
     return failure(settings, folder / "world");
   };
-  EXPECT_EQ(code_with([](auto& s) { s.width_m = 50.0; }), "world-size");
-  EXPECT_EQ(code_with([](auto& s) { s.height_m = 1e9; }), "world-size");
-  EXPECT_EQ(code_with([](auto& s) { s.width_m = std::nan(""); }), "world-size");
-  EXPECT_EQ(code_with([](auto& s) { s.gsd_m = 0.0; }), "world-gsd");
-  EXPECT_EQ(code_with([](auto& s) { s.collapsed_share = 1.5; }), "world-share");
-  EXPECT_EQ(code_with([](auto& s) { s.frames = -1; }), "world-frames");
+  EXPECT_EQ(code_with([](auto& s) { s.width_m = 50.0; }), "parameter-out-of-range");
+  EXPECT_EQ(code_with([](auto& s) { s.height_m = 1e9; }), "parameter-out-of-range");
+  EXPECT_EQ(code_with([](auto& s) { s.width_m = std::nan(""); }), "parameter-out-of-range");
+  EXPECT_EQ(code_with([](auto& s) { s.gsd_m = 0.0; }), "parameter-out-of-range");
+  EXPECT_EQ(code_with([](auto& s) { s.collapsed_share = 1.5; }), "parameter-out-of-range");
+  EXPECT_EQ(code_with([](auto& s) { s.frames = -1; }), "parameter-out-of-range");
   EXPECT_EQ(code_with([](auto& s) { s.footprint_m = 300.0; }), "world-too-small-for-frames");
   EXPECT_EQ(code_with([](auto& s) {
               s.land = Land::kCountry;

@@ -70,9 +70,6 @@ void add_feature_input_options(CLI::App& command, FeatureInputOptions& o) {
           ->expected(2)
           ->check(between(-1e6, 1e6));
   for (CLI::Option* frame : add_frame_options(command, o.frame)) frame->excludes(cell)->excludes(nadir);
-  command.add_option("--seed", o.seed, "Seed of detectors that use random numbers")
-      ->capture_default_str()
-      ->check(seed());
   add_detector_options(command, o.detector);
 }
 
@@ -99,8 +96,7 @@ api::Features FeatureInput::read(const std::string& path) {
 api::Features FeatureInput::features_in(const std::string& path) {
   api::Features features;
   if (detector_ != nullptr) {
-    features =
-        api::detected(ground_seen(options_.frame, path, *detector_), {*detector_, map_.cell_m, {}, options_.seed});
+    features = api::detected(ground_seen(options_.frame, path, *detector_), {*detector_, map_.cell_m});
   } else {
     features.map = feature_map_with_note(path);
   }

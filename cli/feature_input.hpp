@@ -1,7 +1,6 @@
 // What `match` and `fix` take as input: a feature map as PNG, or a frame whose roads are detected first.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <set>
@@ -22,7 +21,6 @@ struct FeatureInputOptions {
   std::optional<double> nadir_sigma_m;  ///< of each, where told: in place of what it says
   std::optional<double> nadir_heading_sigma_deg;
   FrameOptions frame;
-  std::uint64_t seed = 1;
   DetectorChoice detector;
 };
 

@@ -65,7 +65,6 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.cell_m = map.cell_m;
   recorded.step_s = options.plan.handling.step_s;
   recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
-  recorded.seed = options.campaign.seed;
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
   ground.footprint = ground.recordings.front().frames.front().footprint;

@@ -60,10 +60,10 @@ RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& tr
   frame.footprint = evaluation::footprint_of(picture, truth);
   if (options.detector != nullptr) {
     const GroundView view = evaluation::view_of(picture, truth, *options.detector);
-    frame.observation.features = detect_features(*options.detector, view, options.cell_m, options.seed);
+    frame.observation.features = detect_features(*options.detector, view, options.cell_m, kDetectorSeed);
   } else {
-    frame.observation.frame = [=, border = options.border, cell_m = options.cell_m, seed = options.seed] {
-      return CameraFrame{evaluation::read_frame(folder, truth, border), truth.view, cell_m, seed};
+    frame.observation.frame = [=, border = options.border, cell_m = options.cell_m] {
+      return CameraFrame{evaluation::read_frame(folder, truth, border), truth.view, cell_m};
     };
   }
   return frame;

@@ -32,7 +32,6 @@ struct RecordingOptions {
   double cell_m = 2.0;                     ///< of the feature maps
   double step_s = 1.0;                     ///< between frames whose times are not recorded
   std::size_t max_frames = 0;              ///< of a sequence; 0 = all
-  std::uint64_t seed = 1;                  ///< of the detector
 };
 
 /// The flights of a CSV as evaluation::read_frames_csv reads it, one for each sequence, in its order. Each frame has

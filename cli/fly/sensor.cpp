@@ -14,7 +14,6 @@ namespace {
 struct Shot {
   GridPose pose;
   double scale = 1.0;
-  std::uint64_t seed = 0;
 };
 
 /// Cuts frames out of imagery.
@@ -28,8 +27,7 @@ class Camera {
     const double forward = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double right = errors_.agl_m * std::tan(errors_.attitude.radians() * normal(random));
     const double now = std::max(0.5, 1.0 + errors_.altitude * normal(random));
-    constexpr int kSeedBits = 31;
-    return {moved(pose, {forward, right, {}}), scale * now, random() >> (64 - kSeedBits)};
+    return {moved(pose, {forward, right, {}}), scale * now};
   }
 
   GroundImage take(const Shot& shot) const {
@@ -56,8 +54,8 @@ class ImagingSensor : public Sensor {
   ImagingSensor(const Camera& camera, const RoadDetector& detector) : camera_(camera), detector_(detector) {}
 
   Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
-    const Shot shot = camera_.aim(pose, scale, random);
-    return {detect_features(detector_, rectified(camera_.take(shot)), camera_.cell_m(), shot.seed), {}};
+    const GroundImage frame = camera_.take(camera_.aim(pose, scale, random));
+    return {detect_features(detector_, rectified(frame), camera_.cell_m(), kDetectorSeed), {}};
   }
 
   bool shows(GridPoint point) const override { return camera_.shows(point); }

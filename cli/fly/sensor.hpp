@@ -18,12 +18,14 @@
 
 namespace roadfix::fly {
 
+/// Of detectors that use random numbers: that of a service, so that both find the same roads.
+inline constexpr std::uint64_t kDetectorSeed = 1;
+
 /// A picture of the ground, before its roads are detected.
 struct CameraFrame {
   FramePixels picture;
   FrameView view;
-  double cell_m = 0.0;     ///< of the feature map that is to be made of it
-  std::uint64_t seed = 0;  ///< of the detector; below 2^31, as a service takes it
+  double cell_m = 0.0;  ///< of the feature map that is to be made of it
 };
 
 /// Called when the picture is needed: those of whole flights would fill the memory. Equal calls give equal pictures.

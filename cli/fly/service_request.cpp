@@ -46,7 +46,7 @@ json camera_fields(const FrameCamera& camera) {
 
 Picture picture_of(const CameraFrame& frame) {
   const auto png = encode_frame(frame.picture);
-  Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}, {"seed", frame.seed}}, {png.begin(), png.end()}};
+  Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}}, {png.begin(), png.end()}};
   if (const auto* camera = std::get_if<FrameCamera>(&frame.view)) {
     picture.fields.update(camera_fields(*camera));
   } else {

@@ -10,7 +10,7 @@ from silence import FORGOTTEN_S
 
 PLACE = ("north_m", "east_m", "yaw_deg")
 CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
-PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "seed", "agl_m", "roll_deg", "pitch_deg",
+PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "agl_m", "roll_deg", "pitch_deg",
                                   "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m",
                                   "nadir_heading_sigma_deg")
 POSITION_FIELDS = ("covariance", "alt_m", "camera_yaw_deg", "satellites", "system", "sensor", "component")

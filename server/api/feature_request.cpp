@@ -122,7 +122,7 @@ void require_feature_map(const Fields& fields) {
 }  // namespace
 
 const std::vector<std::string>& frame_fields() {
-  static const std::vector<std::string> kFields = joined({{"unobserved", "cell_m", "seed"}, frame_scale_fields()});
+  static const std::vector<std::string> kFields = joined({{"unobserved", "cell_m"}, frame_scale_fields()});
   return kFields;
 }
 
@@ -180,9 +180,6 @@ Features detected(const Content& content, const Detection& detection, const Limi
   const Fields& fields = content.fields;
   Detection asked = detection;
   asked.cell_m = fields.optional_number("cell_m", {0.1, 100.0}).value_or(detection.cell_m);
-  if (const auto seed = fields.optional_integer("seed", 0, std::numeric_limits<int>::max())) {
-    asked.seed = static_cast<std::uint64_t>(*seed);
-  }
   const SeenFrame frame = seen_frame(given_frame(content, limits, detection.stop), detection.detector, limits.pixels);
   const GroundImage& ground = frame.view.image;
   require_few_pixels(ground, detection.detector, limits);

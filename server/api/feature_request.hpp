@@ -29,7 +29,7 @@ std::optional<double> told_nadir_sigma_m(const Fields& fields);
 /// Likewise how far what is seen may be turned about it.
 std::optional<Angle> told_nadir_heading_sigma(const Fields& fields);
 
-/// The feature map, detected if it is a frame. Cell size and seed of the detection are for frames that name none.
+/// The feature map, detected if it is a frame. The cell size of the detection is for frames that name none.
 Features features_of(const Content& content, const Detection& detection, const Limits& limits);
 /// The same of what is a frame for sure, whatever the fields say of a feature map.
 Features detected(const Content& content, const Detection& detection, const Limits& limits);

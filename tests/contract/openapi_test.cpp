@@ -245,7 +245,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     api::told_nadir_heading_sigma(fields);
   });
   const std::vector<std::uint8_t> frame = encode_feature_map(CellArray(32, 32, 100));
-  expect_ranges(document_, "DetectRequest", {{"cell_m", 2}, {"seed", 1}}, [&](const json& body) {
+  expect_ranges(document_, "DetectRequest", {{"cell_m", 2}}, [&](const json& body) {
     api::Content content{{}, frame, true};
     content.fields.add(body, api::frame_fields());
     content.fields.add_text("gsd_m", "0.5");

@@ -16,7 +16,7 @@ Report seen_by(const FrameCamera& camera) {
   report.sequence = 3;
   report.time_us = 4'000'000;
   report.odometry = Odometry{20.0, -0.5, Angle::degrees(3.0)};
-  report.frame = [camera] { return CameraFrame{{cv::Mat(20, 30, CV_8UC3, cv::Scalar(7, 7, 7)), {}}, camera, 2.0, 5}; };
+  report.frame = [camera] { return CameraFrame{{cv::Mat(20, 30, CV_8UC3, cv::Scalar(7, 7, 7)), {}}, camera, 2.0}; };
   return report;
 }
 
@@ -51,7 +51,7 @@ TEST(StepRequest, IsAPictureDescribedInTheQuery) {
   EXPECT_STREQ(request.content_type, "image/png");
   EXPECT_EQ(request.body.substr(1, 3), "PNG");
   EXPECT_EQ(request.query,
-            "?agl_m=250.0&cell_m=2.0&focal_px=40.0&forward_m=20.0&kind=frame&right_m=-0.5&seed=5&sequence=3"
+            "?agl_m=250.0&cell_m=2.0&focal_px=40.0&forward_m=20.0&kind=frame&right_m=-0.5&sequence=3"
             "&time_us=4000000&turn_deg=3.0");
 }
 

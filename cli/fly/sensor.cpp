@@ -72,10 +72,8 @@ class CameraSensor : public Sensor {
   Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     return {std::nullopt, [camera = camera_, shot = camera_.aim(pose, scale, random)] {
               GroundImage image = camera.take(shot);
-              return CameraFrame{{std::move(image.pixels), std::move(image.observed)},
-                                 StraightDown{image.gsd_m},
-                                 camera.cell_m(),
-                                 shot.seed};
+              return CameraFrame{
+                  {std::move(image.pixels), std::move(image.observed)}, StraightDown{image.gsd_m}, camera.cell_m()};
             }};
   }
 

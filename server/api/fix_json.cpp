@@ -1,6 +1,7 @@
 #include "server/api/fix_json.hpp"
 
 #include "server/api/frame_scale.hpp"
+#include "server/api/geojson.hpp"
 #include "server/api/json_parts.hpp"
 
 namespace roadfix::api {
@@ -9,15 +10,14 @@ namespace {
 using nlohmann::json;
 
 json mode_json(const FixMode& mode) {
-  json answer = placed_json(mode.pose);
-  answer.update({{"scale", mode.scale},
-                 {"weight", mode.weight},
-                 {"rho", mode.rho},
-                 {"sigma_m", mode.ellipse.sigma_m},
-                 {"ellipse_heading_deg", mode.ellipse.heading.degrees()},
-                 {"heading_sigma_deg", mode.heading_sigma.degrees()},
-                 {"observed_cells", mode.observed_cells}});
-  return answer;
+  return {{"pose", pose_json(mode.pose)},
+          {"scale", mode.scale},
+          {"weight", mode.weight},
+          {"rho", mode.rho},
+          {"sigma_m", mode.ellipse.sigma_m},
+          {"ellipse_heading_deg", mode.ellipse.heading.degrees()},
+          {"heading_sigma_deg", mode.heading_sigma.degrees()},
+          {"observed_cells", mode.observed_cells}};
 }
 
 }  // namespace
@@ -39,6 +39,7 @@ json to_json(const Fix& fix) {
   if (fix.status == FixStatus::kFix) {
     answer.update(mode_json(fix.modes.at(0)));
     answer.erase("weight");
+    answer["geometry"] = point_json(fix.modes.at(0).pose.position);
   } else {
     answer["reason"] = fix.reason;
     answer["explanation"] = fix.explanation;

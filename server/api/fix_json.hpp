@@ -1,7 +1,7 @@
 // Fixes and match scores as the API and `roadfix --json` give them.
 //
 // Degrees, metres, milliseconds. A position stands at the top only in an answer of status "fix"; otherwise only the
-// modes have one. `geometry` is the same position as GeoJSON.
+// modes have one. `geometry` beside it is the same position as GeoJSON.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -55,6 +55,8 @@ std::vector<Stretch> cut_at_180(std::span<const LatLon> places) {
   return parts;
 }
 
+json point_json(LatLon place) { return {{"type", "Point"}, {"coordinates", {place.lon_deg, place.lat_deg}}}; }
+
 json line_json(std::span<const LatLon> places) {
   const Stretch line(places.begin(), places.end());
   return line_json(std::span(&line, 1));

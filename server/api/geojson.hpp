@@ -16,6 +16,8 @@ namespace roadfix::api {
 /// are in [-180, 180].
 std::vector<std::vector<LatLon>> cut_at_180(std::span<const LatLon> places);
 
+nlohmann::json point_json(LatLon place);
+
 /// A LineString, or a MultiLineString of the parts. Of neighbours the shorter way is meant, as of all flights. There
 /// are two places at least, in [-180, 180].
 nlohmann::json line_json(std::span<const LatLon> places);

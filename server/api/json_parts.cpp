@@ -9,11 +9,6 @@ json pose_json(const GeoPose& pose) {
       {"lat", pose.position.lat_deg}, {"lon", pose.position.lon_deg}, {"heading_deg", pose.heading.compass_degrees()}};
 }
 
-json placed_json(const GeoPose& pose) {
-  const LatLon at = pose.position;
-  return {{"pose", pose_json(pose)}, {"geometry", {{"type", "Point"}, {"coordinates", {at.lon_deg, at.lat_deg}}}}};
-}
-
 json bbox_json(const GeoBox& box) {
   return {box.south_west.lon_deg, box.south_west.lat_deg, box.north_east.lon_deg, box.north_east.lat_deg};
 }

@@ -11,8 +11,6 @@ namespace roadfix::api {
 
 /// lat, lon and heading_deg.
 nlohmann::json pose_json(const GeoPose& pose);
-/// An object of `pose` and `geometry`, the same position as GeoJSON, for more to be added.
-nlohmann::json placed_json(const GeoPose& pose);
 
 /// West, south, east and north, as GeoJSON has a bbox.
 nlohmann::json bbox_json(const GeoBox& box);

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
+#include "server/api/geojson.hpp"
 #include "server/api/json_parts.hpp"
 
 namespace roadfix::api {
@@ -12,15 +13,14 @@ namespace {
 using nlohmann::json;
 
 json cluster_json(const TrackCluster& cluster) {
-  json answer = placed_json(cluster.pose);
-  answer.update({{"weight", cluster.weight},
-                 {"sigma_m", cluster.ellipse.sigma_m},
-                 {"ellipse_heading_deg", cluster.ellipse.heading.degrees()},
-                 {"heading_sigma_deg", cluster.heading_sigma.degrees()},
-                 {"radius95_m", cluster.radius95_m},
-                 {"scale", cluster.scale},
-                 {"scale_sigma", cluster.scale_sigma}});
-  return answer;
+  return {{"pose", pose_json(cluster.pose)},
+          {"weight", cluster.weight},
+          {"sigma_m", cluster.ellipse.sigma_m},
+          {"ellipse_heading_deg", cluster.ellipse.heading.degrees()},
+          {"heading_sigma_deg", cluster.heading_sigma.degrees()},
+          {"radius95_m", cluster.radius95_m},
+          {"scale", cluster.scale},
+          {"scale_sigma", cluster.scale_sigma}};
 }
 
 }  // namespace
@@ -29,7 +29,10 @@ json to_json(const TrackEstimate& estimate) {
   json answer{{"sequence", estimate.sequence},
               {"time_us", estimate.time_us},
               {"status", estimate.converged ? "converged" : "searching"}};
-  if (estimate.converged) answer.update(cluster_json(estimate.clusters.front()));
+  if (estimate.converged) {
+    answer.update(cluster_json(estimate.clusters.front()));
+    answer["geometry"] = point_json(estimate.clusters.front().pose.position);
+  }
   answer["clusters"] = json::array();
   for (const TrackCluster& cluster : estimate.clusters) answer["clusters"].push_back(cluster_json(cluster));
   answer["cluster_count"] = estimate.cluster_count;

@@ -45,6 +45,7 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   EXPECT_NEAR(answer["heading_sigma_deg"].get<double>(), 0.8, 1e-9);
   EXPECT_EQ(answer["observed_cells"], 9812);
   EXPECT_EQ(answer["modes"][0]["weight"], 0.996);
+  EXPECT_FALSE(answer["modes"][0].contains("geometry")) << "its pose says it";
   EXPECT_EQ(answer["searched"]["headings"], 360);
   EXPECT_EQ(answer["searched"]["complete"], true);
   EXPECT_EQ(answer["searched"]["share"], 1.0);

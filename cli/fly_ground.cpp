@@ -200,7 +200,6 @@ fly::Flights flights_of(const FlyOptions& options, const MapView& map, const Gro
 
 VehicleNoise vehicle_of(const FlyOptions& options) {
   VehicleNoise vehicle = options.service.filter.vehicle;
-  vehicle.wind = Wind::of(options.wind_sigma_m_s, options.wind_walk);
   if (options.plan.tells_odometry) return vehicle;
   const fly::Handling& handling = options.plan.handling;
   vehicle.planar =

@@ -55,15 +55,11 @@ void add_belief_options(CLI::App& command, FlyOptions& o) {
       ->group(kGroup)
       ->check(between(0.0, kMaxScaleRange));
   command
-      .add_option("--wind-sigma", o.wind_sigma_m_s,
+      .add_option("--wind-sigma", o.service.filter.vehicle.wind.sigma_m_s,
                   "The wind at first, where odometry is relative to the air: 1 sigma in metres per second and axis")
+      ->capture_default_str()
       ->group(kGroup)
       ->check(between(0.0, 100.0));
-  command
-      .add_option("--wind-walk", o.wind_walk,
-                  "Its changes: growth of the sigma in m/s per square root of a second; default: a fiftieth of it")
-      ->group(kGroup)
-      ->check(between(0.0, 10.0));
 }
 
 void add_flight_options(CLI::App& command, FlyOptions& o) {

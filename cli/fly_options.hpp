@@ -23,9 +23,7 @@ struct FlyOptions {
   double area_m = 0.0;
   Footprint footprint{400.0, 400.0};
   fly::FlightPlan plan;
-  std::optional<int> steps;  ///< default: those of the plan; of a recorded flight all
-  std::optional<double> wind_sigma_m_s;
-  std::optional<double> wind_walk;
+  std::optional<int> steps;              ///< default: those of the plan; of a recorded flight all
   std::vector<int> outage;               ///< first step without frames and the first with them again; empty = none
   std::vector<double> kidnap;            ///< step and metres; empty = none
   std::optional<double> registration_m;  ///< default: what the map says of itself

@@ -82,7 +82,6 @@ json track_request(const ServicePlan& plan, std::uint64_t seed) {
                {"seed", seed},
                {"odometry_share", vehicle.odometry_share},
                {"wind_sigma_m_s", vehicle.wind.sigma_m_s},
-               {"wind_walk", vehicle.wind.walk},
                {"scale_range", vehicle.scale_range}};
   if (const auto& area = plan.area) {
     request["bbox"] = {area->south_west.lon_deg, area->south_west.lat_deg, area->north_east.lon_deg,

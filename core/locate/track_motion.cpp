@@ -50,8 +50,7 @@ double StepMotion::way_m() const {
 Wind StepMotion::wind() const {
   const Wind& told = vehicle_.wind;
   if (!learned_.odometry_is_wrong) return told;
-  const Wind found = Wind::of(std::max(kLeastFoundWindMS, kFoundWindShare * speed_m_s()), std::nullopt);
-  return {std::max(told.sigma_m_s, found.sigma_m_s), std::max(told.walk, found.walk)};
+  return {std::max({told.sigma_m_s, kLeastFoundWindMS, kFoundWindShare * speed_m_s()})};
 }
 
 AcceptanceRegion StepMotion::region() const {
@@ -66,7 +65,7 @@ double StepMotion::move(Filter& filter) {
   if (told_.odometry) return follow_odometry(filter, coasted);
   const auto& planar = vehicle_.planar;
   if (!planar) return coast(filter, !coasted);
-  return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk});
+  return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk()});
 }
 
 void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }
@@ -75,7 +74,7 @@ void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
-  const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk);
+  const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk());
   learned_.coasted_s = 0.0;
   if (told_.seconds >= kShortestS) learn_velocity(odometry);
   if (!coasted) return predict(filter, motion);

@@ -15,12 +15,11 @@ namespace roadfix {
 /// The motion of the air over the ground, where odometry or the planar speed is relative to the air.
 struct Wind {
   double sigma_m_s = 0.0;  ///< 1 sigma of the first wind, per axis
-  double walk = 0.0;       ///< growth of that sigma, m/s per square root of a second
 
-  /// One that is not given follows from the other: a wind changes by its own size in 40 minutes. A filter that takes it
-  /// for constant, or for nothing at first, comes to be sure of a wrong one.
-  static Wind of(std::optional<double> sigma_m_s, std::optional<double> walk);
-  bool is_none() const { return sigma_m_s == 0.0 && walk == 0.0; }
+  /// Growth of that sigma, m/s per square root of a second: a wind changes by its own size in 40 minutes. A filter that
+  /// takes it for constant, or for nothing at first, comes to be sure of a wrong one.
+  double walk() const { return sigma_m_s / 50.0; }
+  bool is_none() const { return sigma_m_s == 0.0; }
 };
 
 /// Takes the place of what a step does not tell.

@@ -31,8 +31,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
     }
   }
   noise.odometry_share = fields.optional_number("odometry_share", {0.0, 1.0}).value_or(noise.odometry_share);
-  noise.wind = Wind::of(fields.optional_number("wind_sigma_m_s", {0.0, 100.0}),
-                        fields.optional_number("wind_walk", {0.0, 10.0}));
+  noise.wind.sigma_m_s = fields.optional_number("wind_sigma_m_s", {0.0, 100.0}).value_or(noise.wind.sigma_m_s);
   noise.scale_range = fields.optional_number("scale_range", {0.0, kMaxScaleRange}).value_or(noise.scale_range);
   noise.nadir_sigma_m = told_nadir_sigma_m(fields);
   return noise;
@@ -52,7 +51,7 @@ const std::vector<std::string>& track_members() {
               prior_fields(),
               {"particles", "seed"},
               {"speed_m_s", "speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s", "odometry_share"},
-              {"wind_sigma_m_s", "wind_walk", "scale_range", "nadir_sigma_m"}});
+              {"wind_sigma_m_s", "scale_range", "nadir_sigma_m"}});
   return kMembers;
 }
 

@@ -222,8 +222,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
              {"turn_rate_deg_s", 0},
              {"turn_rate_sigma_deg_s", 1},
              {"odometry_share", 0.1},
-             {"wind_sigma_m_s", 1},
-             {"wind_walk", 1}};
+             {"wind_sigma_m_s", 1}};
   track.update(prior);
   expect_ranges(document_, "TrackRequest", track, [&](const json& body) {
     api::Fields fields;

@@ -21,7 +21,7 @@ Filter filter_at(const StepMotion& motion, GridPose pose) {
 
 TEST(StepMotion, GivesNewParticlesTheWindOrTheWholeVelocityWhereNothingTellsIt) {
   VehicleNoise vehicle;
-  vehicle.wind = Wind::of(3.0, 0.0);
+  vehicle.wind = {3.0};
   EXPECT_EQ(StepMotion(vehicle, kFlight, {Odometry{20.0, 0.0, {}}, {}, 1.0}, kFlewAt20MS).region().drift_sigma_m_s,
             3.0);
   EXPECT_EQ(StepMotion(vehicle, kFlight, {{}, {}, 1.0}, kFlewAt20MS).region().drift_sigma_m_s, 20.0);

@@ -62,7 +62,7 @@ TEST_F(TrackOfAVehicleThatDrifts, LearnsTheDriftThoughNoneWasTold) {
 
 TEST_F(TrackOfAVehicleThatDrifts, LearnsALargerOneThanWasTold) {
   TrackSettings told = settings();
-  told.vehicle.wind = Wind::of(0.5, std::nullopt);
+  told.vehicle.wind = {0.5};
   const Outcome outcome = flown(told, {7.0, 4.0}, 4);
   EXPECT_TRUE(outcome.odometry_is_wrong);
   EXPECT_LT(outcome.largest_error_m, 15.0);

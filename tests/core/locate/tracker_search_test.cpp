@@ -315,7 +315,7 @@ TEST_F(Track, KeepsItsLastFramesWhileItIsNotPlacedAndKnowsHowItMoved) {
   EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.sequence += 1; }), 1U) << "a step was lost";
   EXPECT_EQ(kept(elsewhere, settings(), [](StepInput& s) { s.time_us += 601'000'000; }), 1U);
   TrackSettings blown = settings();
-  blown.vehicle.wind = Wind::of(std::nullopt, 0.1);
+  blown.vehicle.wind = {5.0};
   EXPECT_EQ(kept(elsewhere, blown, as_it_is), 1U) << "the wind may have carried it anywhere";
   EXPECT_EQ(kept(elsewhere, TrackSettings::paper(500), as_it_is), 0U) << "it never searches";
 }

@@ -78,13 +78,10 @@ TEST(TrackRequest, IsRefusedWhereItTellsMoreOfASpeedThanTheSpeed) {
   }
 }
 
-TEST(TrackRequest, TellsAWindByEitherOfItsFiguresOrBoth) {
-  const auto wind = [](const json& request) { return settings_of(request).vehicle.wind; };
-  EXPECT_DOUBLE_EQ(wind({{"wind_sigma_m_s", 5}}).walk, 0.1);
-  EXPECT_DOUBLE_EQ(wind({{"wind_walk", 0.2}}).sigma_m_s, 10.0);
-  const Wind both = wind({{"wind_sigma_m_s", 5}, {"wind_walk", 0}});
-  EXPECT_EQ(both.sigma_m_s, 5.0);
-  EXPECT_EQ(both.walk, 0.0) << "that is told, rather than left out";
+TEST(TrackRequest, TellsAWindThatChangesAsItIsStrong) {
+  const Wind wind = settings_of({{"wind_sigma_m_s", 5}}).vehicle.wind;
+  EXPECT_EQ(wind.sigma_m_s, 5.0);
+  EXPECT_DOUBLE_EQ(wind.walk(), 0.1);
 }
 
 TEST(TrackRequest, TellsWhatHoldsForAllOfTheTrack) {

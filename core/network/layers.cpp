@@ -141,7 +141,8 @@ class Reader {
     give(node.output(0), of);
   }
 
-  /// Also into the convolution before it, whose output nobody else takes.
+  /// Part of the convolution before it, whose output nobody else takes; but for a sum of that and its own input, which
+  /// would be overwritten while it is read.
   void read_sum(const onnx::NodeProto& node) {
     require(node.input_size() == 2);
     std::array<int, 2> from{layer(node.input(0)), layer(node.input(1))};
@@ -149,7 +150,8 @@ class Reader {
     if (from[0] > from[1]) std::swap(from[0], from[1]);
     const bool after_convolution = from[0] != Layer::kPicture && from[1] == last() &&
                                    layers_.back().kind == Layer::Kind::kConvolution && !layers_.back().rectified &&
-                                   layers_.back().inputs.size() == 1 && users_of_last() == 1;
+                                   layers_.back().inputs.size() == 1 && users_of_last() == 1 &&
+                                   layers_.back().inputs.front() != from[0];
     if (after_convolution) {
       layers_.back().inputs.push_back(from[0]);
       give(node.output(0), last());

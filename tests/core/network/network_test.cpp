@@ -77,6 +77,17 @@ TEST(Network, TheShippedOnesAreOfLayersThatOneDnnRuns) {
   }
 }
 
+TEST(Network, ALayerMayBeAddedToWhatIsMadeOfIt) {
+  OnnxFile file(5);
+  const std::string first = file.convolution("picture", {.inputs = 3, .outputs = 16});
+  const std::string sum = file.sum(first, file.convolution(first, {.inputs = 16, .outputs = 16}));
+  const auto onnx = file.bytes(file.convolution(sum, {.inputs = 16, .outputs = 1}));
+  const cv::Mat picture = random_picture({48, 32});
+  const cv::Mat expected = OpenCvNetwork(onnx).run(picture);
+  const cv::Mat found = OneDnnNetwork(read_layers(onnx).value()).run(picture);
+  EXPECT_LT(cv::norm(found, expected, cv::NORM_INF), 1e-4 * cv::norm(expected, cv::NORM_INF));
+}
+
 TEST(Network, APictureMayBePartOfALargerOne) {
   const auto network = load_network(road_network(1));
   const cv::Mat large = random_picture({96, 80});

@@ -142,11 +142,10 @@ void learn_headings(const BenchArguments& arguments, const nlohmann::json& origi
 }
 
 /// Of imagery.
-std::shared_ptr<const RoadDetector> detector_of_maps(const BenchArguments& arguments, const Detectors& of_frames) {
-  if (!arguments.map_orientations) return of_frames.compared_with(ComparedWith::kImagery);
+std::shared_ptr<const RoadDetector> detector_of_maps(const BenchArguments& arguments) {
   DetectorChoice choice = arguments.detector;
-  choice.orientations = *arguments.map_orientations;
-  return make_detector(choice, ComparedWith::kImagery);
+  choice.orientations = arguments.map_orientations;
+  return make_map_detector(choice);
 }
 
 void run_bench(BenchArguments& arguments) {
@@ -159,7 +158,7 @@ void run_bench(BenchArguments& arguments) {
   require_folder(arguments.options.pictures);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const Detectors detectors(arguments.detector);
-  const std::shared_ptr<const RoadDetector> map_detector = detector_of_maps(arguments, detectors);
+  const std::shared_ptr<const RoadDetector> map_detector = detector_of_maps(arguments);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
   bench::BenchOptions& options = arguments.options;
@@ -236,7 +235,9 @@ void add_bench_command(CLI::App& app) {
                      "Blocks or queries in progress at a time; 1 to measure times");
   command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");
   add_detector_options(*command, a->detector);
-  command->add_option("--map-orientations", a->map_orientations, "As --orientations, for maps; default: the same")
+  command
+      ->add_option("--map-orientations", a->map_orientations,
+                   fmt::format("As --orientations, for maps (default: {})", kMapOrientations))
       ->check(orientations());
   command->callback([a] { run_bench(*a); });
 }

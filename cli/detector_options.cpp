@@ -52,7 +52,7 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
 
 CLI::Validator orientations() { return CLI::IsMember(std::vector<int>(kOrientations.begin(), kOrientations.end())); }
 
-void add_detector_options(CLI::App& command, DetectorChoice& choice) {
+void add_detector_options(CLI::App& command, DetectorChoice& choice, int usual_orientations) {
   command
       .add_option("--detector", choice.name,
                   "Road detector: neural (a network), tree (the paper's growing tree), or auto (neural where its "
@@ -62,9 +62,11 @@ void add_detector_options(CLI::App& command, DetectorChoice& choice) {
   command.add_option("--model", choice.model, "ONNX file of the neural detector, with its JSON beside it")
       ->type_name("FILE");
   command
-      .add_option("--orientations", choice.orientations,
-                  "1, 4 or 8: mean over turned and mirrored copies of the picture; slower, better, for maps")
-      ->capture_default_str()
+      .add_option(
+          "--orientations", choice.orientations,
+          fmt::format("1, 4 or 8: mean over turned and mirrored copies of the picture; slower, better (default: "
+                      "{})",
+                      usual_orientations))
       ->check(orientations());
   add_tree_options(command, choice.tree);
 }

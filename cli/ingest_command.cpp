@@ -179,8 +179,7 @@ void run(const IngestArguments& arguments) {
   const bool imagery =
       std::ranges::any_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; });
   if (imagery) note_missing_network(arguments.detector);
-  const std::unique_ptr<RoadDetector> detector =
-      imagery ? make_detector(arguments.detector, ComparedWith::kImagery) : nullptr;
+  const std::unique_ptr<RoadDetector> detector = imagery ? make_map_detector(arguments.detector) : nullptr;
   const MapSettings settings = settings_of(arguments, requests.front(), detector.get());
   std::optional<MapWriter> writer;
   try {

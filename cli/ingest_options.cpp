@@ -100,7 +100,7 @@ void refuse_without_effect(const IngestArguments& a, std::span<const SourceReque
     const DetectorChoice usual;
     refuse(a.detector.name != usual.name, "--detector", kRoads);
     refuse(a.detector.model != usual.model, "--model", kRoads);
-    refuse(a.detector.orientations != usual.orientations, "--orientations", kRoads);
+    refuse(a.detector.orientations.has_value(), "--orientations", kRoads);
     refuse(a.detector.tree != usual.tree, "--tree-...", kRoads);
   }
   if (lines > 0) return;
@@ -127,7 +127,7 @@ void add_ingest_options(CLI::App& command, IngestArguments& a) {
       ->check(CLI::IsMember({0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0}));
   command.add_option("--zone", a.zone, "UTM zone of a new map, EPSG:326zz or 327zz; default: that of the first source");
   add_content_options(command, a);
-  add_detector_options(command, a.detector);
+  add_detector_options(command, a.detector, kMapOrientations);
   add_provenance_options(command, a);
   add_threads_option(command, "--jobs", a.options.jobs, "Blocks in progress at a time");
   command.add_option("--seed", a.options.seed, "Seed of the detector's random numbers; default: 1")->check(seed());

@@ -24,7 +24,7 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, Compar
     if (!choice.model.empty()) {
       throw InvalidInput("model-without-network", "A model was named for the tree detector, which needs none.");
     }
-    if (choice.orientations != DetectorChoice().orientations) {
+    if (choice.orientations) {
       throw InvalidInput("option-without-effect",
                          "--orientations does nothing with the tree detector, which has no network: leave it out.");
     }
@@ -40,7 +40,13 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, Compar
     throw InvalidInput("option-without-effect",
                        "--tree-... does nothing with the neural detector: give --detector tree, or leave it out.");
   }
-  return std::make_unique<NeuralRoadDetector>(*model, NeuralOptions{choice.orientations});
+  return std::make_unique<NeuralRoadDetector>(
+      *model, NeuralOptions{choice.orientations.value_or(NeuralOptions().orientations)});
+}
+
+std::unique_ptr<RoadDetector> make_map_detector(DetectorChoice choice) {
+  if (choice.name != "tree" && !choice.orientations) choice.orientations = kMapOrientations;
+  return make_detector(choice, ComparedWith::kImagery);
 }
 
 }  // namespace roadfix

@@ -20,7 +20,7 @@ struct Features {
   /// Of frames: for which the detector looked at the ground they show. To decode and rectify them comes before it.
   std::optional<std::chrono::duration<double, std::milli>> detect_time{};
   std::optional<FrameCamera> camera_in_file{};  ///< of a frame whose file tells it
-  std::string detector{};                       ///< of frames: RoadDetector::describe()
+  std::optional<std::string> detector{};        ///< of frames: RoadDetector::describe()
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
 };
 

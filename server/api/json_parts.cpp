@@ -15,9 +15,9 @@ json bbox_json(const GeoBox& box) {
 
 json map_json(const std::string& name, const std::string& version) { return {{"name", name}, {"version", version}}; }
 
-json made_by(const std::string& detector) {
+json made_by(const std::optional<std::string>& detector) {
   json made{{"roadfix", ROADFIX_VERSION}};
-  if (!detector.empty()) made["detector"] = detector;
+  if (detector) made["detector"] = *detector;
   return made;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "core/geodesy/geo_box.hpp"
@@ -18,6 +19,6 @@ nlohmann::json bbox_json(const GeoBox& box);
 /// Which map an answer is about.
 nlohmann::json map_json(const std::string& name, const std::string& version);
 /// What made an answer: the version of the program, and the detector of frames, if any.
-nlohmann::json made_by(const std::string& detector = {});
+nlohmann::json made_by(const std::optional<std::string>& detector = {});
 
 }  // namespace roadfix::api

@@ -88,22 +88,21 @@ http::Response post_track(const Service& service, const http::Request& request) 
   return response;
 }
 
-/// A step as it was sent: all but its feature map, which takes a turn to detect.
+/// A step as it was posted: all but its feature map, which takes a turn to detect.
 struct PostedStep {
   StoredTrack track;
   api::Content content;
   api::PositionFormat format;
-  StepInput input;
-  std::int64_t digest = 0;
+  SentStep sent;
 };
 
 http::Response formatted(const Service& service, const PostedStep& step, StepAnswer answer) {
   if (step.format.is_json()) return {200, "application/json", std::move(answer.text)};
   api::PositionFormat numbered = step.format;
-  numbered.sender.sequence = static_cast<std::uint8_t>(step.input.sequence & 0xff);
+  numbered.sender.sequence = static_cast<std::uint8_t>(step.sent.input.sequence & 0xff);
   // A step that is sent again is as old as when it came first.
-  const auto age = service.tracks.times().age_of_step(step.track.id, step.input.sequence);
-  return api::position_response(answer.answer, numbered, {step.input.time_us, age});
+  const auto age = service.tracks.times().age_of_step(step.track.id, step.sent.input.sequence);
+  return api::position_response(answer.answer, numbered, {step.sent.input.time_us, age});
 }
 
 http::Response step_response(const Service& service, const PostedStep& step, StepAnswer answer) {
@@ -121,34 +120,30 @@ PostedStep read_step(const Service& service, const http::Request& request) {
   api::Content content = api::read_content(request, joined({step_query(), api::picture_members()}), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   if (!api::shows_ground(content)) api::require_nothing_seen(content.fields);
-  StepInput input = api::parse_step(content.fields);
-  const std::int64_t digest = digest_of(content);
-  return {std::move(track), std::move(content), format, std::move(input), digest};
+  SentStep sent{api::parse_step(content.fields), digest_of(content), request.received};
+  return {std::move(track), std::move(content), format, std::move(sent)};
 }
 
 http::Response take_step(const Service& service, const http::Request& request, PostedStep& step) {
   const StoredTrack& track = step.track;
-  StepInput& input = step.input;
-  if (auto answer = service.steps.answered(track.id, input, step.digest)) {  // while it waited for its turn
+  if (auto answer = service.steps.answered(track.id, step.sent)) {  // while it waited for its turn
     return step_response(service, step, *std::move(answer));
   }
   const api::TimeLimit limit(request.deadline);
-  std::string detector_used;
   if (api::shows_ground(step.content)) {
     const auto map = service.maps.find(track.map);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features =
         api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits);
-    input.features = std::move(features.map);
-    detector_used = std::move(features.detector);
+    step.sent.input.features = std::move(features.map);
+    step.sent.detector = std::move(features.detector);
   }
   StepLimits limits;
   const SearchThreads::Share share(service.search_threads);
   limits.threads = share.threads();
   constexpr double kSearchShare = 0.9;
   limits.deadline = api::search_end(request.deadline, limit.token(), kSearchShare);
-  return step_response(service, step,
-                       service.steps.take(track.id, input, step.digest, limits, request.received, detector_used));
+  return step_response(service, step, service.steps.take(track.id, step.sent, limits));
 }
 
 /// Reads the step and gives those that it overtook the time to be taken first, while its picture is held once. One that
@@ -157,8 +152,8 @@ http::Prepared post_step(const Service& service, http::Request& request) {
   PostedStep step = read_step(service, request);
   const bool in_body = step.content.has_picture && !step.content.decoded;
   if (!in_body) std::string().swap(request.body);
-  service.steps.await_predecessor(step.track.id, step.input.sequence);
-  if (auto answer = service.steps.answered(step.track.id, step.input, step.digest)) {
+  service.steps.await_predecessor(step.track.id, step.sent.input.sequence);
+  if (auto answer = service.steps.answered(step.track.id, step.sent)) {
     return step_response(service, step, *std::move(answer));
   }
   return [&service, &request, step = std::move(step)]() mutable { return take_step(service, request, step); };

@@ -15,24 +15,24 @@
 
 namespace roadfix::server {
 
-std::optional<StepAnswer> TrackSteps::stored(const std::string& id, std::int64_t sequence, std::int64_t digest) const {
-  auto taken = tracks_.step(id, sequence);
+std::optional<StepAnswer> TrackSteps::stored(const std::string& id, const SentStep& step) const {
+  auto taken = tracks_.step(id, step.input.sequence);
   if (!taken) return std::nullopt;
-  if (taken->digest != digest) {
+  if (taken->digest != step.digest) {
     throw InvalidInput(
         "step-differs",
-        fmt::format("step {} was already processed with different content: continue with the next number", sequence));
+        fmt::format("step {} was already processed with different content: continue with the next number",
+                    step.input.sequence));
   }
   return StepAnswer{api::stored_json(taken->answer), std::move(taken->answer), true};
 }
 
-std::optional<StepAnswer> TrackSteps::answered(const std::string& id, const StepInput& input,
-                                               std::int64_t digest) const {
+std::optional<StepAnswer> TrackSteps::answered(const std::string& id, const SentStep& step) const {
   const std::shared_ptr<LiveTrack> track = tracks_.in_memory(id);
   // Before the store: a step that is taken meanwhile is not late, but answered.
   const auto before = track ? track->last_state() : nullptr;
-  auto answer = stored(id, input.sequence, digest);
-  if (!answer && before) Tracker::require_possible(*before, input);
+  auto answer = stored(id, step);
+  if (!answer && before) Tracker::require_possible(*before, step.input);
   return answer;
 }
 
@@ -49,22 +49,22 @@ void TrackSteps::await_predecessor(const std::string& id, std::int64_t sequence)
   track->await_predecessor(sequence, tracks_.limits().order_wait);
 }
 
-StepAnswer TrackSteps::take(const std::string& id, const StepInput& input, std::int64_t digest,
-                            const StepLimits& limits, TrackTimes::Clock::time_point came, const std::string& detector) {
+StepAnswer TrackSteps::take(const std::string& id, const SentStep& step, const StepLimits& limits) {
+  const std::int64_t sequence = step.input.sequence;
   const std::shared_ptr<LiveTrack> track = tracks_.live(id);
-  LiveTrack::Turn turn(*track, input.sequence, tracks_.limits().order_wait);
-  if (auto before = stored(id, input.sequence, digest)) return *std::move(before);
+  LiveTrack::Turn turn(*track, sequence, tracks_.limits().order_wait);
+  if (auto before = stored(id, step)) return *std::move(before);
   if (turn.is_doubtful()) turn.settle(tracks_.stored_state(id));
-  StepResult result = track->tracker().advance(turn.state(), input, limits);
+  StepResult result = track->tracker().advance(turn.state(), step.input, limits);
   nlohmann::json answer = api::to_json(result.estimate);
   answer["track"] = id;
   answer["map"] = api::map_json(track->map().name, track->map().view.version);
-  answer["made_by"] = api::made_by(detector);
+  answer["made_by"] = api::made_by(step.detector);
   std::string text = json_text(answer);
   turn.doubt();
-  tracks_.store_step(id, {input.sequence, digest, text}, result.state);
+  tracks_.store_step(id, {sequence, step.digest, text}, result.state);
   turn.settle(std::move(result.state));
-  tracks_.announce_step(id, input.sequence, came);
+  tracks_.announce_step(id, sequence, step.came);
   return {std::move(answer), std::move(text)};
 }
 

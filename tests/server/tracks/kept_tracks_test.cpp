@@ -106,7 +106,7 @@ TEST_F(KeptTracks, SearchesOverTheSameFramesAfterARestart) {
       StepInput step = step_of(i);
       step.features = testing::observed_at(elsewhere, {{600'300.0 + 20.0 * i, 6'399'900.0}, Angle::degrees(90.0)}, 100,
                                            100, 2.0, {0.1, 0.1}, random);
-      json answer = TrackSteps(*tracks).take(id, step, i, {}).answer;
+      json answer = TrackSteps(*tracks).take(id, sent(step, i), {}).answer;
       answer.erase("track");
       answers.push_back(answer.dump());
       if (!restarts) continue;

@@ -99,11 +99,11 @@ TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
   limits.streams = 1;
   const auto tracks = registry(limits);
   const std::string id = begin(*tracks);
-  const std::string answer = TrackSteps(*tracks).take(id, step_of(0), 0, {}).text;
+  const std::string answer = TrackSteps(*tracks).take(id, sent(step_of(0)), {}).text;
   const auto stream = tracks->stream(id, -1);
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "server-busy");
   EXPECT_EQ(stream->next()->steps.at(0).answer, answer);
-  TrackSteps(*tracks).take(id, step_of(1), 1, {});
+  TrackSteps(*tracks).take(id, sent(step_of(1)), {});
   tracks->finish(id);
   EXPECT_EQ(stream->next()->steps.at(0).sequence, 1);
   EXPECT_EQ(stream->next()->ended, TrackEnd::kFinished);

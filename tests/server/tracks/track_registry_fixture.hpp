@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "server/tracks/track_steps.hpp"
@@ -24,6 +25,10 @@ inline StepInput step_of(std::int64_t sequence) {
   return step;
 }
 
+inline SentStep sent(StepInput input, std::int64_t digest = 0) {
+  return {std::move(input), digest, TrackTimes::Clock::now()};
+}
+
 class TrackRegistryTest : public ::testing::Test {
  protected:
   TrackRegistryTest() {
@@ -39,7 +44,7 @@ class TrackRegistryTest : public ::testing::Test {
   }
   /// The answer without the name of the track.
   static std::string take(TrackRegistry& tracks, const std::string& id, std::int64_t sequence) {
-    nlohmann::json answer = TrackSteps(tracks).take(id, step_of(sequence), sequence, {}).answer;
+    nlohmann::json answer = TrackSteps(tracks).take(id, sent(step_of(sequence), sequence), {}).answer;
     answer.erase("track");
     return answer.dump();
   }

@@ -86,7 +86,7 @@ TEST_F(TrackRegistryTest, SearchesByTheCalibrationOfTheService) {
   const auto accepted = [&](const char* file, std::shared_ptr<const Calibration> calibration) {
     TrackRegistry tracks(folder_ / file, {}, maps_, limits_, std::move(calibration));
     const std::string id = tracks.create("::1", R"({"map": "town", "particles": 500})").id;
-    const json answer = TrackSteps(tracks).take(id, first, 0, {}).answer;
+    const json answer = TrackSteps(tracks).take(id, sent(first), {}).answer;
     EXPECT_EQ(answer["measurement"], "searched");
     return !answer["since_accepted_s"].is_null();
   };

@@ -23,8 +23,8 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
   const auto tracks = registry();
   const std::string id = begin(*tracks);
   const auto came = TrackTimes::Clock::now() - std::chrono::seconds(60);
-  const StepAnswer first = TrackSteps(*tracks).take(id, step_of(0), 0, {}, came);
-  const StepAnswer again = TrackSteps(*tracks).take(id, step_of(0), 0, {});
+  const StepAnswer first = TrackSteps(*tracks).take(id, {step_of(0), 0, came}, {});
+  const StepAnswer again = TrackSteps(*tracks).take(id, sent(step_of(0)), {});
   EXPECT_FALSE(first.repeated);
   EXPECT_TRUE(again.repeated);
   EXPECT_EQ(again.text, first.text);
@@ -37,12 +37,12 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
 TEST_F(TrackStepsTest, NamesTheMapTheProgramAndTheDetectorInWhatItKeeps) {
   const auto tracks = registry();
   const std::string id = begin(*tracks);
-  TrackSteps(*tracks).take(id, step_of(0), 0, {});
+  TrackSteps(*tracks).take(id, sent(step_of(0)), {});
   const auto kept = nlohmann::json::parse(tracks->last_step(id).value().answer);
   EXPECT_EQ(kept["map"], (nlohmann::json{{"name", "town"}, {"version", maps_.find("town")->view.version}}));
   EXPECT_TRUE(kept["made_by"].contains("roadfix"));
   EXPECT_FALSE(kept["made_by"].contains("detector"));
-  TrackSteps(*tracks).take(id, step_of(1), 1, {}, TrackTimes::Clock::now(), "tree");
+  TrackSteps(*tracks).take(id, {step_of(1), 1, TrackTimes::Clock::now(), "tree"}, {});
   EXPECT_EQ(nlohmann::json::parse(tracks->last_step(id).value().answer)["made_by"]["detector"], "tree");
 }
 
@@ -50,10 +50,10 @@ TEST_F(TrackStepsTest, RefusesWhatCannotFollowBeforeItsRoadsAreLookedFor) {
   const auto tracks = registry();
   const std::string id = begin(*tracks);
   TrackSteps steps(*tracks);
-  EXPECT_FALSE(steps.answered(id, step_of(2), 2)) << "the first one";
-  const StepAnswer taken = steps.take(id, step_of(2), 2, {});
-  EXPECT_EQ(steps.answered(id, step_of(2), 2).value().text, taken.text);
-  const auto refusal = [&](const StepInput& step) { return code_of([&] { steps.answered(id, step, step.sequence); }); };
+  EXPECT_FALSE(steps.answered(id, sent(step_of(2)))) << "the first one";
+  const StepAnswer taken = steps.take(id, sent(step_of(2)), {});
+  EXPECT_EQ(steps.answered(id, sent(step_of(2))).value().text, taken.text);
+  const auto refusal = [&](const StepInput& step) { return code_of([&] { steps.answered(id, sent(step)); }); };
   EXPECT_EQ(refusal(step_of(3)), "no error");
   EXPECT_EQ(refusal(step_of(1)), "step-late");
   StepInput step = step_of(3);

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -27,6 +26,7 @@
 #include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
+#include "server/api/feature_json.hpp"
 #include "tiles/export/side_files.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
@@ -118,35 +118,26 @@ double mean_probability(const CellArray& cells) {
   return cells.observed_count() == 0 ? 0.0 : sum / static_cast<double>(cells.observed_count());
 }
 
-using Milliseconds = std::chrono::duration<double, std::milli>;
-
-nlohmann::json json_of(const Job& job, double cell_m, const FeatureMap& map, const std::string& detector,
-                       Milliseconds time) {
-  return {{"image", job.image},
-          {"feature_map", job.target},
-          {"cell_m", cell_m},
-          {"cols", map.cells.cols()},
-          {"rows", map.cells.rows()},
-          {"nadir_cell", {map.nadir.col, map.nadir.row}},
-          {"nadir_sigma_m", map.nadir_sigma_m},
-          {"nadir_heading_sigma_deg", map.nadir_heading_sigma.degrees()},
-          {"observed_cells", map.cells.observed_count()},
-          {"mean_probability", mean_probability(map.cells)},
-          {"detector", detector},
-          {"time_ms", time.count()}};
+nlohmann::json json_of(const Job& job, const api::Features& features) {
+  nlohmann::json answer = api::detection_json(features);
+  answer["image"] = job.image;
+  answer["feature_map"] = job.target;
+  answer["observed_cells"] = features.map.cells.observed_count();
+  answer["mean_probability"] = mean_probability(features.map.cells);
+  return answer;
 }
 
-std::string text_of(const Job& job, double cell_m, const FeatureMap& map, const std::string& detector,
-                    Milliseconds time) {
+std::string text_of(const Job& job, const api::Features& features) {
+  const FeatureMap& map = features.map;
   return fmt::format(
       "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
       "UAV above column {:.1f}, row {:.1f}{}\n{}",
-      job.target, map.cells.cols(), map.cells.rows(), cell_m, map.cells.observed_count(), mean_probability(map.cells),
-      time.count(), map.nadir.col, map.nadir.row,
+      job.target, map.cells.cols(), map.cells.rows(), map.cell_m, map.cells.observed_count(),
+      mean_probability(map.cells), features.detect_time.value().count(), map.nadir.col, map.nadir.row,
       map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis) and {:.1f} degrees",
                                             map.nadir_sigma_m, map.nadir_heading_sigma.degrees())
                               : "",
-      detector);
+      features.detector.value());
 }
 
 std::unique_ptr<RoadDetector> detector_of(const DetectOptions& options) {
@@ -167,7 +158,6 @@ void detect(const DetectOptions& options, const Job& job, const RoadDetector& de
   const Picture picture = read_picture(options, job.image, detector);
   const api::Features features = api::detected(picture.frame, {detector, options.cell_m, {}, options.seed});
   const FeatureMap& map = features.map;
-  const auto time = features.detect_time.value();
   if (map.cells.observed_count() == 0) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", job.image));
   }
@@ -179,11 +169,11 @@ void detect(const DetectOptions& options, const Job& job, const RoadDetector& de
   }
   std::FILE* out = printed_beside({job.target});
   if (options.json) {
-    nlohmann::json answer = json_of(job, options.cell_m, map, detector.describe(), time);
+    nlohmann::json answer = json_of(job, features);
     if (picture.place) answer["crs"] = fmt::format("EPSG:{}", picture.place->zone.epsg());
     fmt::print(out, "{}\n", json_text(answer));
   } else {
-    fmt::print(out, "{}\n", text_of(job, options.cell_m, map, detector.describe(), time));
+    fmt::print(out, "{}\n", text_of(job, features));
   }
 }
 

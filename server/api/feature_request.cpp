@@ -133,9 +133,9 @@ const std::vector<std::string>& feature_fields() {
 }
 
 const std::vector<std::string>& picture_members() {
-  static const std::vector<std::string> kMembers{"image",        "cells",    "cols",    "rows",
-                                                 "pose",         "map",      "epsg",    "footprint",
-                                                 "geotransform", "detector", "time_ms", "attribution"};
+  static const std::vector<std::string> kMembers{"image",        "cells",   "cols",    "rows",
+                                                 "pose",         "map",     "epsg",    "footprint",
+                                                 "geotransform", "made_by", "time_ms", "attribution"};
   return kMembers;
 }
 

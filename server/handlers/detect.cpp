@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/detect/feature_map_codec.hpp"
+#include "server/api/base64.hpp"
 #include "server/api/feature_json.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/media.hpp"
@@ -32,9 +33,8 @@ http::Response post_detect(const Service& service, const http::Request& request)
   const api::Features features = api::detected(content, {*detector, kDefaultCellM, limit.token()}, service.limits);
   http::Response response;
   if (format == "json") {
-    nlohmann::json answer = api::to_json(features.map);
-    answer["time_ms"] = {{"detect", features.detect_time->count()}};
-    answer["detector"] = detector->describe();
+    nlohmann::json answer = api::detection_json(features);
+    answer["cells"] = api::base64_encoded(features.map.cells.cells());
     response = json_response(answer);
   } else {
     const auto png = encode_feature_map(features.map, detector->describe());

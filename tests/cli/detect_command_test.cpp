@@ -135,7 +135,7 @@ TEST_F(DetectCommand, RectifiesWhatACameraSaw) {
   EXPECT_EQ(level["cols"], 100);
   EXPECT_EQ(level["rows"], 60);
   const auto nose_up = nlohmann::json::parse(detect("--fov 90 --agl 100 --pitch 30 --json").out);
-  EXPECT_GT(nose_up["nadir_cell"][1], nose_up["rows"].get<double>() / 2.0) << "the ground seen lies ahead of the UAV";
+  EXPECT_GT(nose_up["nadir_row"], nose_up["rows"].get<double>() / 2.0) << "the ground seen lies ahead of the UAV";
 }
 
 TEST_F(DetectCommand, TakesTheCalibrationOfACamera) {
@@ -185,7 +185,7 @@ TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
              "--tree-gamma 0.6 --tree-epsilon 2 --tree-edge 8 --tree-fan 5 --tree-fan-width 30 --tree-root-fan 12 "
              "--tree-nodes 50 --tree-explored 0.5 --tree-area 4000 --tree-min-score 0.01")
           .out);
-  EXPECT_EQ(answer["detector"],
+  EXPECT_EQ(answer["made_by"]["detector"],
             "tree map=binary gsd_m=0.5 trees_per_km2=5000 min_nodes=2 alpha=0.4 beta=0.9 gamma=0.6 epsilon=2 edge_px=8 "
             "fan=5 fan_half_width_deg=30 root_fan=12 max_nodes=50 max_explored_share=0.5 max_area_px=4000 "
             "min_score=0.01");

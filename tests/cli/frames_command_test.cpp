@@ -135,7 +135,9 @@ nlohmann::json detected(const std::filesystem::path& folder, const std::string& 
   EXPECT_EQ(result.code, 0) << result.err;
   auto answer = nlohmann::json::parse(result.out);
   answer.erase("time_ms");
-  for (auto& number : answer.at("nadir_cell")) number = std::round(1e6 * number.get<double>());
+  for (const char* name : {"nadir_col", "nadir_row"}) {
+    answer.at(name) = std::round(1e6 * answer.at(name).get<double>());
+  }
   return answer;
 }
 

@@ -215,7 +215,7 @@ TEST_F(ServiceFix, AFrameOverRoadDataIsReadAsAFeatureMapToBeComparedWithRoads) {
   const json for_roads = features("&compare_with=roads");
   const json for_imagery = features("&compare_with=imagery");
   EXPECT_EQ(features("")["cells"], for_imagery["cells"]);
-  EXPECT_NE(for_roads["detector"], for_imagery["detector"]);
+  EXPECT_NE(for_roads["made_by"]["detector"], for_imagery["made_by"]["detector"]);
   const double of_frame = rho_of({{"image", api::base64_encoded(png)}, {"kind", "frame"}, {"gsd_m", 1.0}});
   EXPECT_EQ(of_frame, rho_of(for_roads));
   EXPECT_NE(of_frame, rho_of(for_imagery));

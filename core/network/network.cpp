@@ -8,7 +8,7 @@
 namespace roadfix {
 
 std::unique_ptr<Network> load_network(std::span<const unsigned char> onnx) {
-  if (onednn_suits_processor()) {
+  if (onednn_suits()) {
     if (auto layers = read_layers(onnx)) return std::make_unique<OneDnnNetwork>(std::move(*layers));
   }
   return std::make_unique<OpenCvNetwork>(onnx);

@@ -17,7 +17,8 @@ class Network {
   virtual cv::Mat run(const cv::Mat& picture) = 0;
 };
 
-/// oneDNN runs networks of the layers that layers.hpp knows, each call in its caller's thread, and OpenCV all others.
+/// oneDNN, where it suits, runs networks of the layers that layers.hpp knows, each call in its caller's thread. OpenCV
+/// runs all others.
 /// cv::Exception where `onnx` is no ONNX file that OpenCV knows.
 std::unique_ptr<Network> load_network(std::span<const unsigned char> onnx);
 

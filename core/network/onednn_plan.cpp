@@ -270,9 +270,27 @@ cv::Mat OneDnnPlan::run(const cv::Mat& picture) {
   return cv::Mat(static_cast<int>(dims[2]), static_cast<int>(dims[3]), CV_32FC1, result_.get_data_handle()).clone();
 }
 
-bool onednn_suits_processor() {
-  const dnnl::cpu_isa isa = dnnl::get_effective_cpu_isa();
-  return isa != dnnl::cpu_isa::all && isa >= dnnl::cpu_isa::avx2;
+bool onednn_suits() {
+  static const bool suits = [] {
+    const dnnl::cpu_isa isa = dnnl::get_effective_cpu_isa();
+    if (isa == dnnl::cpu_isa::all || isa < dnnl::cpu_isa::avx2) return false;
+    Layer layer{.inputs = {Layer::kPicture}, .channels = 1};
+    layer.convolution = {.inputs = 3,
+                         .outputs = 1,
+                         .kernel = {1, 1},
+                         .stride = {1, 1},
+                         .dilation = {1, 1},
+                         .weights = {0.0F, 0.0F, 0.0F},
+                         .bias = {0.0F}};
+    OneDnnConstants constants;
+    try {
+      OneDnnPlan({&layer, 1}, {16, 16}, constants).run(cv::Mat::zeros(16, 16, CV_32FC3));
+    } catch (const dnnl::error&) {
+      return false;
+    }
+    return true;
+  }();
+  return suits;
 }
 
 }  // namespace roadfix

@@ -53,7 +53,8 @@ class OneDnnPlan {
   std::vector<dnnl::memory> buffers_;  ///< behind the memories of steps
 };
 
-/// Whether this processor has the vectors for which oneDNN is faster than OpenCV.
-bool onednn_suits_processor();
+/// Whether oneDNN is faster than OpenCV here: it needs a processor with AVX2, and a system that lets it write the code
+/// that it runs (systemd's MemoryDenyWriteExecute does not).
+bool onednn_suits();
 
 }  // namespace roadfix

@@ -13,15 +13,17 @@ TEST(NetworkLayers, OfANetworkTellWhatTheyTakeAndWhetherTheyAreRectified) {
   OnnxFile file(1);
   const std::string first = file.rectified(file.convolution("picture", {.inputs = 3, .outputs = 4, .stride = 2}));
   const std::string second = file.convolution(first, {.inputs = 4, .outputs = 4, .dilation = 2});
+  const std::string third = file.convolution(second, {.inputs = 4, .outputs = 4});
   const auto layers = read_layers(file.bytes(
-      file.convolution(file.rectified(file.sum(first, second)), {.inputs = 4, .outputs = 1, .kernel = {1, 1}})));
+      file.convolution(file.rectified(file.sum(first, third)), {.inputs = 4, .outputs = 1, .kernel = {1, 1}})));
   ASSERT_TRUE(layers);
-  ASSERT_EQ(layers->size(), 3U);
+  ASSERT_EQ(layers->size(), 4U);
   EXPECT_EQ(layers->at(0).inputs, std::vector<int>{Layer::kPicture});
   EXPECT_TRUE(layers->at(0).rectified);
-  EXPECT_EQ(layers->at(1).inputs, (std::vector<int>{0, 0})) << "the sum is the second convolution's";
-  EXPECT_TRUE(layers->at(1).rectified);
-  EXPECT_FALSE(layers->at(2).rectified);
+  EXPECT_FALSE(layers->at(1).rectified);
+  EXPECT_EQ(layers->at(2).inputs, (std::vector<int>{1, 0})) << "the sum is the third convolution's";
+  EXPECT_TRUE(layers->at(2).rectified);
+  EXPECT_FALSE(layers->at(3).rectified);
   EXPECT_EQ(output_sides(*layers, {32, 20}), (std::array{16, 10}));
 }
 

@@ -1,8 +1,11 @@
 #include "core/network/network.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
 
 #include <array>
+#include <cstdlib>
 #include <filesystem>
 #include <future>
 #include <opencv2/core.hpp>
@@ -117,6 +120,27 @@ TEST(Network, OpenCvRunsLayersOfOtherKinds) {
   const cv::Mat answer = load_network(onnx)->run(random_picture({32, 16}));
   EXPECT_EQ(answer.size(), cv::Size(16, 8));
   EXPECT_TRUE(cv::checkRange(answer, true, nullptr, 0.0, 1.0));
+}
+
+/// Whether the system has refused, from now on, memory that can be written and run.
+bool refuses_written_code() {
+  constexpr int kSetMdwe = 65;  // of Linux 6.3, which Debian 12's headers do not have
+  return prctl(kSetMdwe, 1UL, 0UL, 0UL, 0UL) == 0;
+}
+
+int answer_without_written_code() {
+  constexpr int kNotKnown = 77;
+  if (!refuses_written_code()) return kNotKnown;
+  const cv::Mat answer = load_network(road_network(1))->run(random_picture({64, 32}));
+  return answer.size() == cv::Size(32, 16) ? 0 : 1;
+}
+
+TEST(NetworkDeathTest, OpenCvRunsThemWhereTheSystemRefusesToRunWhatIsWritten) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  const auto is_well = [](int status) {
+    return WIFEXITED(status) && (WEXITSTATUS(status) == 0 || WEXITSTATUS(status) == 77);
+  };
+  EXPECT_EXIT(std::exit(answer_without_written_code()), is_well, "");
 }
 
 TEST(Network, RefusesSizesThatItsLayersDoNotFit) {

@@ -168,7 +168,7 @@ INSERT INTO gpkg_extensions VALUES
   ('gpkg_2d_gridded_coverage_ancillary', NULL, 'gpkg_2d_gridded_coverage', 'http://docs.opengeospatial.org/is/17-066r1/17-066r1.html', 'read-write'),
   ('gpkg_2d_gridded_tile_ancillary', NULL, 'gpkg_2d_gridded_coverage', 'http://docs.opengeospatial.org/is/17-066r1/17-066r1.html', 'read-write'),
   ('road_probability', 'tile_data', 'gpkg_2d_gridded_coverage', 'http://docs.opengeospatial.org/is/17-066r1/17-066r1.html', 'read-write'),
-  ('roadfix_meta', NULL, 'roadfix_map', 'Key and value: schema_version, epsg, cell_m, version (a hash of the finest tiles). See schema/map-format.md of Roadfix.', 'read-write'),
+  ('roadfix_meta', NULL, 'roadfix_map', 'Key and value: schema_version, epsg, cell_m, version (a hash of the finest tiles), shifts_outdated, error_of_removed_m. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_sources', NULL, 'roadfix_map', 'Ingested sources with their provenance. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_blocks', NULL, 'roadfix_map', 'Ledger of the blocks of each source. See schema/map-format.md of Roadfix.', 'read-write'),
   ('roadfix_evidence', NULL, 'roadfix_map', 'Road probability as each source has it, 8-bit PNG tiles. See schema/map-format.md of Roadfix.', 'read-write'),

@@ -62,7 +62,7 @@ void insert_settings(Connection& map, const MapSettings& settings) {
   meta.with("schema_version", std::to_string(kSchemaVersion)).run();
   meta.with("epsg", std::to_string(epsg)).run();
   meta.with("cell_m", fmt::format("{}", settings.cell_m)).run();
-  meta.with("version", fmt::format("{:016x}", 0)).run();
+  meta.with("version", version_text(0)).run();
 }
 
 void write_map(const fs::path& path, const MapSettings& settings) {

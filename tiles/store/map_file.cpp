@@ -11,6 +11,7 @@
 #include "core/units/text.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/shift_table.hpp"
+#include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -196,6 +197,8 @@ bool lattice_has(Connection& map, const MapSettings& settings) {
          finest.real(2) == settings.cell_m && finest.real(3) == settings.cell_m;
 }
 
+std::string version_text(std::uint64_t version) { return fmt::format("{:016x}", version); }
+
 std::string read_version(Connection& map) { return meta_value(map, "version"); }
 
 std::int64_t count_pending(Connection& map) { return number(map, "SELECT count(*) FROM roadfix_pending"); }
@@ -206,7 +209,7 @@ MapInfo read_info(Connection& map) {
   info.version = read_version(map);
   info.schema_version = *as_number<int>(meta_value(map, "schema_version"));
   info.levels = zoom_of(info.settings.cell_m) - kCoarsestZoom + 1;
-  info.extent = {{0.0, 0.0}, {-1.0, -1.0}};
+  info.extent = kNothingObserved;
   Statement extent(map,
                    "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'road_probability' AND "
                    "min_x IS NOT NULL");
@@ -216,31 +219,7 @@ MapInfo read_info(Connection& map) {
   info.tiles = tiles.integer(0);
   info.pending = count_pending(map);
   info.error_of_removed_m = error_of_removed_m(map);
-  Statement sources(map,
-                    "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "
-                    "registration_sigma_m, in_force, ingested_at, "
-                    "(SELECT count(*) FROM roadfix_blocks b WHERE b.source_id = s.id), "
-                    "(SELECT total(done) FROM roadfix_blocks b WHERE b.source_id = s.id) "
-                    "FROM roadfix_sources s ORDER BY name, in_force DESC");
-  const auto shifts = read_shifts(map);
-  while (sources.step()) {
-    SourceStatus status{.record = {.name = sources.text(0),
-                                   .kind = sources.text(1),
-                                   .location = sources.text(2),
-                                   .fingerprint = sources.text(3),
-                                   .method = sources.text(4),
-                                   .provenance = {.date = sources.text(5),
-                                                  .licence = sources.text(6),
-                                                  .attribution = sources.text(7),
-                                                  .registration_sigma_m = sources.real(8)}}};
-    status.complete = sources.integer(9) != 0;
-    status.ingested_at = sources.text(10);
-    status.blocks_total = sources.integer(11);
-    status.blocks_done = sources.integer(12);
-    const auto shift = shifts.find(status.record.name);
-    if (status.complete && shift != shifts.end()) status.shift = shift->second;
-    info.sources.push_back(std::move(status));
-  }
+  info.sources = SourceTable(map, zoom_of(info.settings.cell_m)).all();
   return info;
 }
 

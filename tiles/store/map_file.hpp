@@ -2,7 +2,9 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/sqlite.hpp"
@@ -35,6 +37,8 @@ MapSettings read_settings(sqlite::Connection& map);
 MapSettings settings_as_written(sqlite::Connection& map);
 /// The lattice of the tiles is in this zone, and its finest cells have this size.
 bool lattice_has(sqlite::Connection& map, const MapSettings& settings);
+/// As roadfix_meta and MapInfo have it.
+std::string version_text(std::uint64_t version);
 std::string read_version(sqlite::Connection& map);
 /// Tiles that are to be fused.
 std::int64_t count_pending(sqlite::Connection& map);

@@ -90,6 +90,9 @@ struct SourceStatus {
   bool is_damaged() const { return complete && blocks_done < blocks_total; }
 };
 
+/// The extent of a map that holds nothing: empty(), but finite, so that it has a centre and makes a grid.
+inline constexpr GridBox kNothingObserved{{0.0, 0.0}, {-1.0, -1.0}};
+
 struct MapInfo {
   MapSettings settings;
   std::string version = {};  ///< changes whenever a fused cell changes

@@ -214,7 +214,7 @@ class Verifier {
           {static_cast<int>(tiles.integer(0)), index_row(static_cast<int>(tiles.integer(1)), table_.finest_zoom())},
           tiles.blob(2));
     }
-    if (fmt::format("{:016x}", sum) != info.version) {
+    if (version_text(sum) != info.version) {
       report("version-wrong",
              "the version in roadfix_meta is not that of the tiles. Repair it with roadfix verify --repair");
     }

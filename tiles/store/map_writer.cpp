@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <system_error>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
@@ -174,11 +175,11 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
   std::vector<TileIndex> open;
   if (same) {
     if (unfinished) s.sources.remove(unfinished->id);
-    s.sources.describe(in_force->id, record);
+    s.sources.set_provenance(in_force->id, record);
     if (in_force->registration_sigma_m != record.provenance.registration_sigma_m) call_shifts_outdated(s.map);
   } else {
     const std::int64_t id = unfinished ? unfinished->id : s.sources.insert(record);
-    s.sources.describe(id, record);
+    s.sources.set_provenance(id, record);
     s.sources.set_ledger(id, blocks);
     const auto done = s.sources.done_blocks(id);
     std::ranges::copy_if(blocks, std::back_inserter(open), [&](TileIndex block) { return !done.contains(block); });
@@ -235,8 +236,7 @@ std::vector<std::string> MapWriter::sources_beside(const std::string& source) {
 
 std::set<std::string> MapWriter::sources_in_force() {
   std::set<std::string> names;
-  Statement all(state_->map, "SELECT name FROM roadfix_sources WHERE in_force = 1");
-  while (all.step()) names.insert(all.text(0));
+  for (auto& [id, name] : state_->sources.in_force()) names.insert(std::move(name));
   return names;
 }
 
@@ -281,17 +281,13 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   std::vector<std::string> lost = s.evidence.drop_damaged();
   // What waits follows from the evidence in force, all of which is fused anew.
-  for (const char* sql :
-       {"DELETE FROM roadfix_pending",
-        "DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
-        "DELETE FROM road_probability", "UPDATE roadfix_meta SET value = '0000000000000000' WHERE key = 'version'"}) {
+  for (const char* sql : {"DELETE FROM roadfix_pending",
+                          "DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
+                          "DELETE FROM road_probability"}) {
     s.map.execute(sql);
   }
-  std::vector<std::int64_t> sources;
-  for (Statement all(s.map, "SELECT id FROM roadfix_sources WHERE in_force = 1"); all.step();) {
-    sources.push_back(all.integer(0));
-  }
-  for (const std::int64_t id : sources) s.fusion.add_source(id);
+  Statement(s.map, "UPDATE roadfix_meta SET value = ?1 WHERE key = 'version'").with(version_text(0)).run();
+  for (const auto& [id, name] : s.sources.in_force()) s.fusion.add_source(id);
   if (!lost.empty()) call_shifts_outdated(s.map);
   s.fusion.update_extent();
   transaction.commit();

@@ -4,6 +4,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/store/map_file.hpp"
+#include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -29,13 +30,50 @@ std::int64_t SourceTable::insert(const SourceRecord& record) {
   return map_.last_insert_id();
 }
 
-void SourceTable::describe(std::int64_t id, const SourceRecord& r) {
+void SourceTable::set_provenance(std::int64_t id, const SourceRecord& r) {
   const Provenance& p = r.provenance;
   Statement(map_,
             "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
             "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
       .with(id, r.kind, r.location, p.date, p.licence, p.attribution, r.method, p.registration_sigma_m)
       .run();
+}
+
+std::vector<SourceStatus> SourceTable::all() {
+  Statement select(map_,
+                   "SELECT name, kind, location, fingerprint, method, date, licence, attribution, "
+                   "registration_sigma_m, in_force, ingested_at, "
+                   "(SELECT count(*) FROM roadfix_blocks b WHERE b.source_id = s.id), "
+                   "(SELECT total(done) FROM roadfix_blocks b WHERE b.source_id = s.id) "
+                   "FROM roadfix_sources s ORDER BY name, in_force DESC");
+  const auto shifts = read_shifts(map_);
+  std::vector<SourceStatus> sources;
+  while (select.step()) {
+    SourceStatus status{.record = {.name = select.text(0),
+                                   .kind = select.text(1),
+                                   .location = select.text(2),
+                                   .fingerprint = select.text(3),
+                                   .method = select.text(4),
+                                   .provenance = {.date = select.text(5),
+                                                  .licence = select.text(6),
+                                                  .attribution = select.text(7),
+                                                  .registration_sigma_m = select.real(8)}}};
+    status.complete = select.integer(9) != 0;
+    status.ingested_at = select.text(10);
+    status.blocks_total = select.integer(11);
+    status.blocks_done = select.integer(12);
+    const auto shift = shifts.find(status.record.name);
+    if (status.complete && shift != shifts.end()) status.shift = shift->second;
+    sources.push_back(std::move(status));
+  }
+  return sources;
+}
+
+std::vector<std::pair<std::int64_t, std::string>> SourceTable::in_force() {
+  Statement select(map_, "SELECT id, name FROM roadfix_sources WHERE in_force = 1 ORDER BY id");
+  std::vector<std::pair<std::int64_t, std::string>> sources;
+  while (select.step()) sources.emplace_back(select.integer(0), select.text(1));
+  return sources;
 }
 
 std::set<TileIndex> SourceTable::done_blocks(std::int64_t id) {

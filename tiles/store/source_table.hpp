@@ -6,6 +6,8 @@
 #include <set>
 #include <span>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tiles/store/map_records.hpp"
 #include "tiles/store/sqlite.hpp"
@@ -27,8 +29,11 @@ class SourceTable {
   std::optional<Entry> find(const std::string& name, bool in_force);
   /// A source on its way, without provenance or blocks. Returns its id.
   std::int64_t insert(const SourceRecord& record);
-  /// Sets the provenance.
-  void describe(std::int64_t id, const SourceRecord& record);
+  void set_provenance(std::int64_t id, const SourceRecord& record);
+  /// By name; of one name that in force first.
+  std::vector<SourceStatus> all();
+  /// Their ids and names.
+  std::vector<std::pair<std::int64_t, std::string>> in_force();
   /// The ledger holds exactly these blocks; what was done stays done.
   void set_ledger(std::int64_t id, std::span<const TileIndex> blocks);
   std::set<TileIndex> done_blocks(std::int64_t id);

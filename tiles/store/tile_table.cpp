@@ -36,7 +36,7 @@ struct ObservedCells {
     }
   }
   GridBox box(double cell_m) const {
-    if (east < west) return {{0.0, 0.0}, {-1.0, -1.0}};
+    if (east < west) return kNothingObserved;
     return GridGeometry{cell_m, {west, north}, east - west, south - north}.box();
   }
 };
@@ -108,7 +108,7 @@ void TileTable::add_to_version(std::uint64_t difference) {
   const std::string text = read_version(map_);
   std::uint64_t version = 0;
   std::from_chars(text.data(), text.data() + text.size(), version, 16);
-  set_version_.with(fmt::format("{:016x}", version + difference)).run();
+  set_version_.with(version_text(version + difference)).run();
 }
 
 std::optional<CellArray> TileTable::derived(int zoom, TileIndex index) {

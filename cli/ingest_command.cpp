@@ -1,19 +1,17 @@
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iterator>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/ingest_notes.hpp"
 #include "cli/ingest_options.hpp"
 #include "cli/ingest_report.hpp"
 #include "cli/ingest_zone.hpp"
@@ -22,7 +20,6 @@
 #include "cli/terminal.hpp"
 #include "core/detect/make_detector.hpp"
 #include "core/units/error.hpp"
-#include "core/units/shell_word.hpp"
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/sources/temporary_files.hpp"
@@ -30,66 +27,6 @@
 
 namespace roadfix::cli {
 namespace {
-
-/// What was made of another source tells nothing that this one does not.
-void note_copies(MapWriter& writer, const std::string& source, const std::string& map, const ShiftReport& shifts) {
-  const std::vector<std::string> twins = writer.twins_of(source);
-  std::set<std::string> copies(twins.begin(), twins.end());
-  if (const auto found = shifts.copies.find(source); found != shifts.copies.end()) {
-    copies.insert(found->second.begin(), found->second.end());
-  }
-  for (const std::string& copy : copies) {
-    const bool exact = std::ranges::find(twins, copy) != twins.end();
-    const std::string agrees = exact ? fmt::format("says exactly what the source '{}' says", copy)
-                                     : fmt::format("agrees with the source '{}' as only a copy does", copy);
-    fmt::print(stderr,
-               "note: '{}' {}, and counts with it as one where other sources differ. If {}: roadfix remove {} {}\n",
-               source, agrees,
-               exact ? "it is the same content, take it out" : "one was made of the other, take the worse one out",
-               shell_word(map), shell_word(source));
-  }
-}
-
-/// A newer version mostly has a newer file name, and would count beside the older one.
-std::optional<std::string> note_on_nothing_replaced(const std::string& map, const std::string& source) {
-  constexpr std::size_t kNamed = 8;
-  if (!std::filesystem::exists(map)) return std::nullopt;
-  std::set<std::string> names;
-  const MapReader reader(map);
-  for (const SourceStatus& status : reader.info().sources) names.insert(status.record.name);
-  if (names.empty() || names.contains(source)) return std::nullopt;
-  const auto last = std::next(names.begin(), std::min(std::ssize(names), std::ptrdiff_t{kNamed}));
-  return fmt::format(
-      "--replace replaces nothing: the map has no source '{}', it has '{}'{}. If this is a newer version of one of "
-      "them, take the older one out (roadfix remove); with its --name it would have been replaced",
-      source, fmt::join(names.begin(), last, "', '"), last == names.end() ? "" : " and others");
-}
-
-/// New imagery of the worst quarter of a town is no newer version of the imagery of the town.
-std::optional<std::string> note_on_ground_lost(const CellSource& newer, const std::string& map,
-                                               const std::string& source, double cell_m) {
-  constexpr std::ptrdiff_t kParts = 10;  // one of them may go: the edges of two pictures differ
-  const std::set<TileIndex> blocks = MapWriter::blocks_of(map, source);
-  const auto lost = std::ranges::count_if(
-      blocks, [&](TileIndex block) { return !newer.touches(tile_geometry(block, cell_m).box()); });
-  if (lost * kParts <= std::ssize(blocks)) return std::nullopt;
-  const double block_km2 = std::pow(kTileCells * cell_m / 1e3, 2);
-  return fmt::format(
-      "--replace takes {:.1f} of {:.1f} km2 of the old '{}' out of the map, which this one does not cover. If it shows "
-      "a part only, ingest it with another --name instead",
-      static_cast<double>(lost) * block_km2, static_cast<double>(blocks.size()) * block_km2, source);
-}
-
-/// Of the source, and of those beside it, for which it may be the other side.
-void note_shifts(const std::string& map, const std::string& source, const ShiftReport& shifts) {
-  std::vector<std::string> names;
-  for (const auto& [name, shift] : shifts.beside) names.insert(name == source ? names.begin() : names.end(), name);
-  for (const std::string& name : names) {
-    const double stated_m = MapWriter::records_of(map, name).front().provenance.registration_sigma_m;
-    print_shift_note(name, shifts.beside.at(name), stated_m, name == names.front());
-  }
-  for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);
-}
 
 IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSummary& summary,
                                   const SourceRecord& record, MapWriter& writer, IngestOptions options) {
@@ -112,13 +49,14 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const CellSource& source = *planned.cells;
   SourceSummary summary = summary_of(source, request.files);
   std::ranges::move(zone_notes(source, settings), std::back_inserter(summary.notes));
-  if (auto note = note_on_distance(source, arguments.map)) summary.notes.push_back(std::move(*note));
+  const std::optional<MapInfo> before = info_of(arguments.map);
+  if (auto note = note_on_distance(source, before)) summary.notes.push_back(std::move(*note));
   SourceRecord record = record_of(request.files, summary, arguments.options.seed);
-  std::ranges::move(describe_source(record, summary.told, arguments.told,
-                                    MapWriter::records_of(arguments.map, record.name), arguments.options.replace),
+  const auto records = before ? records_of(*before, record.name) : std::vector<SourceRecord>();
+  std::ranges::move(describe_source(record, summary.told, arguments.told, records, arguments.options.replace),
                     std::back_inserter(summary.notes));
   if (arguments.options.replace) {
-    if (auto note = note_on_nothing_replaced(arguments.map, record.name)) summary.notes.push_back(std::move(*note));
+    if (auto note = note_on_nothing_replaced(before, record.name)) summary.notes.push_back(std::move(*note));
     if (auto note = note_on_ground_lost(source, arguments.map, record.name, settings.cell_m))
       summary.notes.push_back(std::move(*note));
   }
@@ -126,7 +64,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);
-    const std::int64_t held = std::ssize(MapWriter::blocks_of(arguments.map, record));
+    const std::int64_t held = std::ssize(finished_blocks(arguments.map, record));
     print_plan(json, planned.blocks - held, arguments.map, arguments.json);
     return;
   }
@@ -140,9 +78,9 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
                                   : "all its pixels are nodata, transparent, no numbers or in one colour");
   }
   if (report.blocks_before < report.blocks) {
-    note_copies(*writer, record.name, arguments.map, report.shifts);
+    note_copies(writer->twins_of(record.name), record.name, arguments.map, report.shifts);
   }
-  note_shifts(arguments.map, record.name, report.shifts);
+  note_shifts(record.name, report.shifts);
   print_report(json, summary, settings, report, arguments.json);
 }
 

@@ -4,12 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
 
-#include "cli/shift_text.hpp"
 #include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/source_json.hpp"
@@ -82,7 +80,7 @@ void print_report(nlohmann::json json, const SourceSummary& summary, const MapSe
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
-  for (const auto& [name, shift] : report.shifts.beside) json["shifts"][name] = api::to_json(shift);
+  for (const auto& [name, beside] : report.shifts.beside) json["shifts"][name] = api::to_json(beside.shift);
   for (const std::string& note : report.shifts.notes) json["notes"].push_back(note);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = summary.is_lines();
@@ -97,21 +95,6 @@ void print_report(nlohmann::json json, const SourceSummary& summary, const MapSe
   fmt::print("{}: {} blocks ({} done before), {:.1f} s reading and detecting ({:.2f} {}/s), {:.1f} s fusing\n",
              json["source"].get<std::string>(), report.blocks, report.blocks_before, report.reading_s, rate,
              lines ? "features" : "MP", report.fusing_s);
-}
-
-void print_shift_note(const std::string& source, const SourceShift& shift, double stated_sigma_m, bool advised) {
-  fmt::print(
-      stderr,
-      "note: '{}' would fit the other sources of the map better about {} from where it lies (correlation of the "
-      "roads {:.2f} instead of {:.2f}): places on its ground count as known within {:.3g} m (1 sigma) instead of "
-      "{:.3g} m\n",
-      source, directions_of(shift), shift.correlation, shift.correlation_in_place, shift.sigma_m, stated_sigma_m);
-  if (!advised) return;
-  fmt::print(stderr,
-             "      Nobody knows which of them is right, and fewer places are found: check the georeference of both "
-             "(--crs). Where one is known to be wrong, ingest that one with --registration-sigma {:.0f}, and the other "
-             "one keeps what it states\n",
-             std::ceil(shift.sigma_m));
 }
 
 void print_notes(const SourceFiles& files, const SourceSummary& summary) {

@@ -27,10 +27,7 @@ double cell_mp(const SourceSummary& summary, const MapSettings& settings);
 void print_report(nlohmann::json json, const SourceSummary& summary, const MapSettings& settings,
                   const IngestReport& report, bool as_json);
 
-/// On stderr, so that --json stays clean. What the shift of a source means and, where `advised`, what to do about it.
-void print_shift_note(const std::string& source, const SourceShift& shift, double stated_sigma_m, bool advised);
-
-/// On stderr, too.
+/// On stderr, so that --json stays clean.
 void print_notes(const SourceFiles& files, const SourceSummary& summary);
 
 }  // namespace roadfix::cli

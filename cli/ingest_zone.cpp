@@ -80,10 +80,11 @@ void refuse_several_zones(const SourceRequest& request, const InvalidInput& erro
 }  // namespace
 
 MapSettings settings_of(const IngestArguments& arguments, const SourceRequest& first, const RoadDetector* detector) {
-  if (std::optional<MapSettings> existing = MapWriter::settings_of(arguments.map)) {
-    if (arguments.cell_m) existing->cell_m = *arguments.cell_m;
-    if (!arguments.zone.empty()) existing->zone = parsed_zone(arguments.zone);
-    return *existing;
+  if (const auto map = info_of(arguments.map)) {
+    MapSettings existing = map->settings;
+    if (arguments.cell_m) existing.cell_m = *arguments.cell_m;
+    if (!arguments.zone.empty()) existing.zone = parsed_zone(arguments.zone);
+    return existing;
   }
   const double cell_m = arguments.cell_m.value_or(kCellM);
   if (!arguments.zone.empty()) return {parsed_zone(arguments.zone), cell_m};
@@ -137,23 +138,6 @@ std::vector<std::string> zone_notes(const CellSource& source, const MapSettings&
                     far_m / 1e3, zone.epsg(), 100.0 * stretch(far_m)));
   }
   return notes;
-}
-
-std::optional<std::string> note_on_distance(const CellSource& source, const std::filesystem::path& map) {
-  constexpr double kNearM = 10e3;
-  if (!std::filesystem::exists(map)) return std::nullopt;
-  const GridBox known = MapReader(map).info().extent;
-  const GridBox own = source.extent();
-  if (known.empty()) return std::nullopt;
-  const GridBox both = united(own, known);
-  const double away_m = std::hypot(std::max(0.0, both.width_m() - own.width_m() - known.width_m()),
-                                   std::max(0.0, both.height_m() - own.height_m() - known.height_m()));
-  if (away_m <= std::max({kNearM, known.width_m(), known.height_m()})) return std::nullopt;
-  return fmt::format(
-      "it lies {:.0f} km from all that the map holds, which is {:.1f} x {:.1f} km. If it belongs elsewhere, latitude "
-      "and longitude may be swapped in it, or its reference system is wrong (--crs gives the right one); roadfix "
-      "remove takes it out of the map",
-      away_m / 1e3, known.width_m() / 1e3, known.height_m() / 1e3);
 }
 
 }  // namespace roadfix::cli

@@ -2,9 +2,7 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,8 +26,5 @@ PlannedSource plan_source(const SourceRequest& request, const MapSettings& setti
 
 /// What to tell of a source that reaches beyond the zone of the map.
 std::vector<std::string> zone_notes(const CellSource& source, const MapSettings& settings);
-
-/// What to tell of a source that lies farther from all that the map holds than that is wide; nothing of a new map.
-std::optional<std::string> note_on_distance(const CellSource& source, const std::filesystem::path& map);
 
 }  // namespace roadfix::cli

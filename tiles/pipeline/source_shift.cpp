@@ -171,9 +171,10 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
     }
     try {
       const auto [copies, others] = witnesses.around(source);
-      const auto shift = shift_of(writer.shared_evidence(source, others, kTiles), writer.settings().cell_m);
+      const SharedEvidence shared = writer.shared_evidence(source, others, kTiles);
+      const auto shift = shift_of(shared, writer.settings().cell_m);
       measured.emplace(source, shift);
-      if (shift) result.beside.emplace(source, *shift);
+      if (shift) result.beside.insert({source, {*shift, shared.own_sigma_m}});
       if (!copies.empty()) result.copies.emplace(source, copies);
     } catch (const CorruptData& damage) {
       not_measured[damage.what()].push_back(source);

@@ -24,9 +24,15 @@ namespace roadfix {
 std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m);
 
 struct ShiftReport {
-  std::map<std::string, SourceShift> beside;  ///< of the sources that lie beside the others
-  std::map<std::string, Witness> copies;      ///< of the sources that have any: see Witnesses::Around
-  std::vector<std::string> notes;             ///< why others could not be measured
+  struct Beside {
+    SourceShift shift;
+    double stated_sigma_m = 0.0;  ///< the registration error that the source states
+
+    friend bool operator==(const Beside&, const Beside&) = default;
+  };
+  std::map<std::string, Beside> beside;   ///< of the sources that lie beside the others
+  std::map<std::string, Witness> copies;  ///< of the sources that have any: see Witnesses::Around
+  std::vector<std::string> notes;         ///< why others could not be measured
 };
 
 /// Measures these sources in force anew, each beside those that are no copies of it, and tells the map. Of one that

@@ -14,6 +14,7 @@
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/shift_table.hpp"
+#include "tiles/store/source_table.hpp"
 #include "tiles/store/tile_cache.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
@@ -215,5 +216,30 @@ std::optional<double> MapReader::registration_sigma_m(const GridBox& box) const 
 }
 
 std::size_t MapReader::cached_bytes() const { return state_->cache.bytes(); }
+
+std::optional<MapInfo> info_of(const std::filesystem::path& path) {
+  if (!is_there(path)) return std::nullopt;
+  Connection map = open_map(path, Access::kRead);
+  return read_info(map);
+}
+
+std::set<TileIndex> blocks_in_force(const std::filesystem::path& path, const std::string& source) {
+  if (!is_there(path)) return {};
+  Connection map = open_map(path, Access::kRead);
+  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
+  const auto entry = sources.find(source, true);
+  return entry ? sources.done_blocks(entry->id) : std::set<TileIndex>();
+}
+
+std::set<TileIndex> finished_blocks(const std::filesystem::path& path, const SourceRecord& record) {
+  if (!is_there(path)) return {};
+  Connection map = open_map(path, Access::kRead);
+  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
+  for (const bool in_force : {true, false}) {
+    const auto entry = sources.find(record.name, in_force);
+    if (entry && entry->fingerprint == record.fingerprint) return sources.done_blocks(entry->id);
+  }
+  return {};
+}
 
 }  // namespace roadfix

@@ -6,7 +6,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "core/grid/road_grid.hpp"
 #include "tiles/store/map_records.hpp"
@@ -52,5 +54,15 @@ class MapReader {
   struct State;
   std::unique_ptr<State> state_;
 };
+
+/// nullopt where no file is.
+std::optional<MapInfo> info_of(const std::filesystem::path& path);
+
+/// What the map holds of the source of this name in force; nothing where no file or no such source is.
+std::set<TileIndex> blocks_in_force(const std::filesystem::path& path, const std::string& source);
+
+/// What the map holds of this very source, whole or interrupted: MapWriter::begin_source() would not ask for these
+/// blocks.
+std::set<TileIndex> finished_blocks(const std::filesystem::path& path, const SourceRecord& record);
 
 }  // namespace roadfix

@@ -44,6 +44,14 @@ std::vector<Provenance> parts_of(const MapInfo& info) {
 
 }  // namespace
 
+std::vector<SourceRecord> records_of(const MapInfo& info, const std::string& source) {
+  std::vector<SourceRecord> records;
+  for (const SourceStatus& status : info.sources) {
+    if (status.record.name == source) records.push_back(status.record);
+  }
+  return records;
+}
+
 std::string missing_of(const MapInfo& info) {
   std::string text;
   for (const SourceStatus& source : info.sources) {

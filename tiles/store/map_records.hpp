@@ -105,6 +105,9 @@ struct MapInfo {
   std::vector<SourceStatus> sources = {};
 };
 
+/// Of the sources of this name, complete or not, the one in force first.
+std::vector<SourceRecord> records_of(const MapInfo& info, const std::string& source);
+
 /// What of the sources is missing, since an ingest was interrupted or goes on: "source 'post': 9 of 16 blocks", and so
 /// on of others; empty where nothing is.
 std::string missing_of(const MapInfo& info);

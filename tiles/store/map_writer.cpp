@@ -104,44 +104,9 @@ MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;
 
 const MapSettings& MapWriter::settings() const { return state_->settings; }
 
-std::optional<MapSettings> MapWriter::settings_of(const std::filesystem::path& path) {
-  if (!is_there(path)) return std::nullopt;
-  Connection map = open_map(path, Access::kRead);
-  return read_settings(map);
-}
-
 MapWriter MapWriter::existing(const std::filesystem::path& path) {
   Connection map = open_map(path, Access::kRead);
   return {path, read_settings(map)};
-}
-
-std::vector<SourceRecord> MapWriter::records_of(const std::filesystem::path& path, const std::string& source) {
-  std::vector<SourceRecord> records;
-  if (!is_there(path)) return records;
-  Connection map = open_map(path, Access::kRead);
-  for (SourceStatus& status : read_info(map).sources) {
-    if (status.record.name == source) records.push_back(std::move(status.record));
-  }
-  return records;
-}
-
-std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, const std::string& source) {
-  if (!is_there(path)) return {};
-  Connection map = open_map(path, Access::kRead);
-  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
-  const auto entry = sources.find(source, true);
-  return entry ? sources.done_blocks(entry->id) : std::set<TileIndex>();
-}
-
-std::set<TileIndex> MapWriter::blocks_of(const std::filesystem::path& path, const SourceRecord& record) {
-  if (!is_there(path)) return {};
-  Connection map = open_map(path, Access::kRead);
-  SourceTable sources(map, zoom_of(read_settings(map).cell_m));
-  for (const bool in_force : {true, false}) {
-    const auto entry = sources.find(record.name, in_force);
-    if (entry && entry->fingerprint == record.fingerprint) return sources.done_blocks(entry->id);
-  }
-  return {};
 }
 
 void MapWriter::require_acceptable(const std::filesystem::path& path, const MapSettings& settings,

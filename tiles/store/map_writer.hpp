@@ -33,20 +33,9 @@ class MapWriter {
   MapWriter& operator=(MapWriter&&) noexcept;
 
   const MapSettings& settings() const;
-  /// Settings of an existing map; nullopt where no file is.
-  static std::optional<MapSettings> settings_of(const std::filesystem::path& path);
 
   /// The map as it is. Throws NotFound ("map-not-found") where no file is, and what the constructor does.
   static MapWriter existing(const std::filesystem::path& path);
-
-  /// What the map tells of the sources of this name, complete or not, the one in force first; nothing where no file is.
-  static std::vector<SourceRecord> records_of(const std::filesystem::path& path, const std::string& source);
-
-  /// What the map holds of the source of this name in force; nothing where no file or no such source is.
-  static std::set<TileIndex> blocks_of(const std::filesystem::path& path, const std::string& source);
-
-  /// What the map holds of this very source, whole or interrupted: begin_source() would not ask for these blocks.
-  static std::set<TileIndex> blocks_of(const std::filesystem::path& path, const SourceRecord& record);
 
   /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
   /// writes nothing: for a plan.

@@ -235,8 +235,8 @@ TEST_F(MeasuredShifts, OfTwoThatDifferBothCountAsUncertain) {
   put("b", 10);
   const auto shifts = measure_shifts(writer, {"a", "b"}).beside;
   ASSERT_EQ(shifts.size(), 2U);
-  EXPECT_EQ(shifts.at("b").east_m, -20.0);
-  EXPECT_EQ(shifts.at("a").east_m, 20.0);
+  EXPECT_EQ(shifts.at("b").shift.east_m, -20.0);
+  EXPECT_EQ(shifts.at("a").shift.east_m, 20.0);
   for (const SourceStatus& source : sources()) {
     EXPECT_EQ(source.registration_sigma_m(), 10.0) << source.record.name;
     EXPECT_EQ(source.record.provenance.registration_sigma_m, 2.5);
@@ -383,8 +383,8 @@ TEST_F(MeasuredShifts, OfThoseBesideANewSourceAreMeasuredAnew) {
   const SourceRecord record{.name = "b", .kind = "roads", .fingerprint = "b"};
   const auto shifts = ingest(TileSource(tile, part_of(town, tile, 10)), record, writer, {}).shifts.beside;
   ASSERT_EQ(shifts.size(), 2U);
-  EXPECT_EQ(shifts.at("b").east_m, -20.0);
-  EXPECT_EQ(shifts.at("a").east_m, 20.0);
+  EXPECT_EQ(shifts.at("b").shift.east_m, -20.0);
+  EXPECT_EQ(shifts.at("a").shift.east_m, 20.0);
 }
 
 TEST_F(MeasuredShifts, StayAsTheyWereKnownWhereEvidenceIsDamagedAndItIsSaidWhich) {

@@ -55,7 +55,7 @@ TEST_F(MapFile, AMissingOneIsNotFound) {
 TEST_F(MapFile, OneThatCannotEvenBeLookedForSaysWhy) {
   path = folder / (std::string(300, 'm') + ".gpkg");
   EXPECT_EQ(opened(), "map-io");
-  EXPECT_EQ(testing::code_of([&] { MapWriter::settings_of(path); }), "map-io");
+  EXPECT_EQ(testing::code_of([&] { info_of(path); }), "map-io");
 }
 
 TEST_F(MapFile, AFolderIsNotOne) {
@@ -125,7 +125,7 @@ TEST_F(MapFile, ASettingThatTheTileLatticeContradictsIsFound) {
     fs::copy_file(path, whole, fs::copy_options::overwrite_existing);
     execute(sql);
     EXPECT_EQ(opened(), "map-corrupt") << sql;
-    EXPECT_EQ(testing::code_of([&] { MapWriter::settings_of(path); }), "map-corrupt") << sql;
+    EXPECT_EQ(testing::code_of([&] { info_of(path); }), "map-corrupt") << sql;
     EXPECT_FALSE(verify_map(path).problems.empty()) << sql;
     fs::rename(whole, path);
   }

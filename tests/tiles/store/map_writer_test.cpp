@@ -54,14 +54,16 @@ TEST(MapWriter, TellsWhichBlocksOfASourceItHoldsWholeOrInterrupted) {
   const auto path = folder / "m.gpkg";
   const TestSource older{"a", 1, some_blocks(2)};
   const TestSource newer{"a", 2, some_blocks(2)};
-  EXPECT_TRUE(MapWriter::blocks_of(path, older.record()).empty());
+  EXPECT_TRUE(finished_blocks(path, older.record()).empty());
   MapWriter writer(path, settings_37n());
   ingest(writer, older);
   writer.begin_source(newer.record(), newer.blocks, true);
-  EXPECT_TRUE(MapWriter::blocks_of(path, newer.record()).empty());
+  EXPECT_TRUE(finished_blocks(path, newer.record()).empty());
   put_block(writer, "a", newer.blocks[3], random_cells(2, newer.blocks[3]));
-  EXPECT_EQ(MapWriter::blocks_of(path, newer.record()), std::set{newer.blocks[3]});
-  EXPECT_EQ(MapWriter::blocks_of(path, older.record()).size(), 4U);
+  EXPECT_EQ(finished_blocks(path, newer.record()), std::set{newer.blocks[3]});
+  EXPECT_EQ(finished_blocks(path, older.record()).size(), 4U);
+  EXPECT_EQ(blocks_in_force(path, "a").size(), 4U);
+  EXPECT_TRUE(blocks_in_force(path, "b").empty());
 }
 
 TEST(MapWriter, SeveralBlocksAreOneTransaction) {
@@ -287,13 +289,13 @@ TEST(MapWriter, SaysThatItsMapWasMovedWhereWhatWasFinishedStaysWhole) {
 TEST(MapWriter, RefusesWhatDoesNotFit) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";
-  EXPECT_EQ(MapWriter::settings_of(path), std::nullopt);
+  EXPECT_FALSE(info_of(path));
   EXPECT_EQ(code_of([&] { MapWriter::existing(path); }), "map-not-found");
   EXPECT_EQ(code_of([&] { MapWriter(path, settings_37n(3.0)); }), "cell-size-not-supported");
   EXPECT_FALSE(std::filesystem::exists(path));
   EXPECT_EQ(code_of([&] { MapWriter(folder / "no/such/folder/m.gpkg", settings_37n()); }), "map-not-writable");
   MapWriter writer(path, settings_37n(2.0));
-  EXPECT_EQ(MapWriter::settings_of(path), settings_37n(2.0));
+  EXPECT_EQ(info_of(path).value().settings, settings_37n(2.0));
   EXPECT_EQ(code_of([&] { put_block(writer, "a", {847, -8165}, CellArray(256, 256)); }), "block-not-expected");
   const std::vector<TileIndex> outside{{5000, -8165}};
   EXPECT_EQ(code_of([&] {

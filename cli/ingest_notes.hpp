@@ -1,0 +1,33 @@
+// What `roadfix ingest` has to say of a source beside what its map holds, before the ingest and after it.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tiles/pipeline/source_shift.hpp"
+#include "tiles/sources/cell_source.hpp"
+#include "tiles/store/map_records.hpp"
+
+namespace roadfix::cli {
+
+/// The source lies farther from all that the map holds than that is wide. Nothing of a new map.
+std::optional<std::string> note_on_distance(const CellSource& source, const std::optional<MapInfo>& map);
+
+/// `--replace` of a source that the map does not have: a newer version mostly has a newer file name, and would count
+/// beside the older one.
+std::optional<std::string> note_on_nothing_replaced(const std::optional<MapInfo>& map, const std::string& source);
+
+/// `--replace` by a source that leaves out ground: new imagery of the worst quarter of a town is no newer version of
+/// the imagery of the town.
+std::optional<std::string> note_on_ground_lost(const CellSource& newer, const std::string& map,
+                                               const std::string& source, double cell_m);
+
+/// On stderr: what was made of another source tells nothing that this one does not. `twins` say exactly the same.
+void note_copies(const std::vector<std::string>& twins, const std::string& source, const std::string& map,
+                 const ShiftReport& shifts);
+
+/// On stderr: of the source, and of those beside it, for which it may be the other side.
+void note_shifts(const std::string& source, const ShiftReport& shifts);
+
+}  // namespace roadfix::cli

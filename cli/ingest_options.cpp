@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <string>
 
@@ -31,8 +32,12 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command
       .add_option("--as", a.meaning,
                   "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
-      ->capture_default_str()
-      ->check(CLI::IsMember({"auto", "imagery", "roads"}));
+      ->transform(CLI::CheckedTransformer(std::map<std::string, SourceMeaning>{{"auto", SourceMeaning::kAuto},
+                                                                               {"imagery", SourceMeaning::kImagery},
+                                                                               {"roads", SourceMeaning::kRoads}})
+                      .description(""))
+      ->type_name("auto|imagery|roads")
+      ->default_str("auto");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");
   command.add_option(
@@ -75,7 +80,7 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
 
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source) {
   SourceRequest request;
-  request.files = find_source(source, parse_meaning(arguments.meaning), arguments.vectors.layer);
+  request.files = find_source(source, arguments.meaning, arguments.vectors.layer);
   if (!arguments.name.empty()) request.files.name = arguments.name;
   request.raster.crs = arguments.crs;
   if (!arguments.collar.empty()) request.raster.collar = parse_colour(arguments.collar);

@@ -11,6 +11,7 @@
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
+#include "tiles/sources/source_files.hpp"
 
 namespace roadfix::cli {
 
@@ -18,7 +19,7 @@ struct IngestArguments {
   std::vector<std::string> sources;
   std::string map;
   std::string name;
-  std::string meaning = "auto";
+  SourceMeaning meaning = SourceMeaning::kAuto;
   std::optional<double> cell_m;
   std::string zone;
   std::string crs;

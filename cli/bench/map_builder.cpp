@@ -41,10 +41,11 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
 SourceRequest request_of(const ManifestSource& source, const std::filesystem::path& cache) {
   SourceRequest request;
   if (source.as == "invented") {
-    request.files = find_source(invented_roads(source, cache).string(), parse_meaning("roads"));
+    request.files = find_source(invented_roads(source, cache).string(), SourceMeaning::kRoads);
     return request;
   }
-  request.files = find_source(source.path.string(), parse_meaning(source.as));
+  const SourceMeaning meaning = source.as == "imagery" ? SourceMeaning::kImagery : SourceMeaning::kRoads;
+  request.files = find_source(source.path.string(), meaning);
   return request;
 }
 

@@ -78,6 +78,12 @@ TEST_F(MapCommands, AnswersInJsonOfFilesWhoseNamesAreNoUtf8) {
   EXPECT_EQ(nlohmann::json::parse(result.out)["source"], "m\xef\xbf\xbd");
 }
 
+TEST_F(MapCommands, IngestOfWhatIsNeitherImageryNorRoadsIsWrongUsage) {
+  const std::string into = " --map " + (folder / "n.gpkg").string();
+  EXPECT_EQ(roadfix("ingest " + path.string() + " --as heights" + into).code, 2);
+  EXPECT_EQ(roadfix("ingest " + path.string() + " --as auto" + into).code, 0);
+}
+
 TEST_F(MapCommands, VerifyEndsWithOneForADamagedMap) {
   EXPECT_EQ(roadfix("verify " + path.string()).code, 0);
   testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00' WHERE zoom_level = 4");

@@ -199,13 +199,6 @@ std::string name_of_file(const fs::path& path) {
 
 }  // namespace
 
-SourceMeaning parse_meaning(std::string_view text) {
-  if (text == "auto") return SourceMeaning::kAuto;
-  if (text == "imagery") return SourceMeaning::kImagery;
-  assert(text == "roads");
-  return SourceMeaning::kRoads;
-}
-
 SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer) {
   require_gdal();
   const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "tiles/sources/cell_source.hpp"
@@ -12,8 +11,6 @@ namespace roadfix {
 /// What the user says a source is. kAuto: vectors, maps, rasters of roads that roadfix wrote and copies of either are
 /// roads, other rasters imagery.
 enum class SourceMeaning { kAuto, kImagery, kRoads };
-/// Of "auto", "imagery" or "roads".
-SourceMeaning parse_meaning(std::string_view text);
 
 struct SourceFiles {
   std::string name;  ///< stem of the file or archive, or name of the folder

@@ -158,9 +158,10 @@ TEST_F(MapCommands, ExportWritesARegion) {
 }
 
 TEST_F(MapCommands, SayThatTilesStillShowWhatTheMapHeldBefore) {
-  EXPECT_THAT(roadfix("export " + path.string() + " before.tif").err, Not(HasSubstr("still show")));
+  EXPECT_THAT(roadfix("export " + path.string() + " " + (folder / "before.tif").string()).err,
+              Not(HasSubstr("still show")));
   testing::open_sqlite(path).execute("INSERT INTO roadfix_pending VALUES (11, 12315, 848)");
-  const ProgramResult exported = roadfix("export " + path.string() + " after.tif");
+  const ProgramResult exported = roadfix("export " + path.string() + " " + (folder / "after.tif").string());
   EXPECT_EQ(exported.code, 0);
   EXPECT_THAT(exported.err, HasSubstr("note: " + path.string() + ": 1 of its tiles still show"));
   EXPECT_THAT(roadfix("fix " + path.string() + " nowhere.png --cell 2").err, HasSubstr("still show"));

@@ -32,7 +32,12 @@ class Queries : public ::testing::Test {
     set_.footprint = {200.0, 200.0};
   }
 
-  std::vector<Query> drawn() const { return make_queries(set_, map_, map_, detector_, {}).queries; }
+  std::vector<Query> drawn_on(const MapView& searched) const {
+    std::vector<Query> queries = make_queries(set_, searched, map_, detector_, {}).queries;
+    EXPECT_FALSE(queries.empty()) << "tests look at each";
+    return queries;
+  }
+  std::vector<Query> drawn() const { return drawn_on(map_); }
 
   const MapView map_ = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 500, 400}));
   const TreeRoadDetector detector_;
@@ -85,7 +90,7 @@ TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
 TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
   const MapView west = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 250, 400}));
   set_.from = "newer";
-  for (const Query& query : make_queries(set_, west, map_, detector_, {}).queries) {
+  for (const Query& query : drawn_on(west)) {
     EXPECT_TRUE(west.extent.contains(map_.zone.project(query.truth.value().position))) << query.id;
   }
 }

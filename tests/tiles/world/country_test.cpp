@@ -79,6 +79,8 @@ TEST(Country, HasEveryKindOfLandAndLineInSomePlace) {
 
 TEST(Country, HasRoadsOfTheWidthsThatTheCountryHas) {
   const Plan plan = small_country(5, 800.0);
+  EXPECT_TRUE(std::ranges::any_of(plan.streets, unpaved_track));
+  EXPECT_FALSE(std::ranges::all_of(plan.streets, unpaved_track));
   for (const Street& street : plan.streets) {
     if (unpaved_track(street)) {
       EXPECT_GE(street.width_m, 2.5);
@@ -140,15 +142,19 @@ TEST(Country, HasCrownsAboveSomeOfItsTracksButNoTrunkOnARoad) {
 }
 
 TEST(Country, OfDenseWoodsHasTreesCloseTogether) {
-  int woods = 0;
   for (int seed = 1; seed <= 4; ++seed) {
     const Plan plan = small_country(static_cast<std::uint64_t>(seed));
-    woods += std::ranges::any_of(plan.country.parcels, [](const Parcel& p) { return p.cover == Cover::kWood; }) &&
-                     plan.trees.size() > 1000
-                 ? 1
-                 : 0;
+    Corridor woods(plan);
+    for (const Parcel& parcel : plan.country.parcels) {
+      if (parcel.cover == Cover::kWood) woods.add_area(parcel.outline);
+    }
+    double hectares = 0.0;
+    for (double x = 2.0; x < plan.width_m; x += 4.0) {
+      for (double y = 2.0; y < plan.height_m; y += 4.0) hectares += woods.contains({x, y}) ? 0.0016 : 0.0;
+    }
+    const auto trees = std::ranges::count_if(plan.trees, [&](const Tree& tree) { return woods.contains(tree.centre); });
+    EXPECT_GT(static_cast<double>(trees), 500.0 * hectares) << seed;
   }
-  EXPECT_GE(woods, 2);
 }
 
 TEST(Country, IsLeftWithFallenTreesAndLandslidesByAnEarthquake) {

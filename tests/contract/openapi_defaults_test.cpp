@@ -76,7 +76,16 @@ TEST_F(OpenApiDefaults, OfATrackAreTaken) {
   all["map"] = "m";
   api::Fields fields;
   fields.add(all, api::track_members());
-  EXPECT_NO_THROW(api::parse_track(fields, {}));
+  const TrackSettings told = api::parse_track(fields, {}).settings;
+  api::Fields map_only;
+  map_only.add(json{{"map", "m"}}, api::track_members());
+  const TrackSettings untold = api::parse_track(map_only, {}).settings;
+  EXPECT_EQ(told.start, untold.start);
+  EXPECT_EQ(told.filter.max_particles, untold.filter.max_particles);
+  EXPECT_EQ(told.measurement_model.kind, untold.measurement_model.kind);
+  EXPECT_EQ(told.seed, untold.seed);
+  EXPECT_EQ(told.vehicle.odometry_share, untold.vehicle.odometry_share);
+  EXPECT_EQ(told.vehicle.scale_range, untold.vehicle.scale_range);
 }
 
 /// Integers that may exceed 32 bits, and do not say so to those who generate programs from the document.

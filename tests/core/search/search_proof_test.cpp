@@ -5,6 +5,7 @@
 #include "core/grid/resample.hpp"
 #include "core/search/search.hpp"
 #include "tests/support/random_pose.hpp"
+#include "tests/support/repeats.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -15,6 +16,7 @@ using testing::grid_city;
 using testing::observed_at;
 using testing::pose_within;
 using testing::reader_of;
+using testing::repeats;
 using testing::street_map;
 
 TEST(SearchProof, IsGivenWhereItIsAskedFor) {
@@ -125,7 +127,7 @@ TEST(SearchProof, LeadsToTheSameAnswerWithAnyNumberOfThreads) {
     const FeatureMap seen = observed_at(map, pose_within(region.box, 100.0, random), 70, 70, 2.0, {0.3, 0.5}, random);
     options.threads = 1;
     const SearchResult one = search(reader_of(map), 2.0, seen, region, options);
-    for (int run = 0; run < 3; ++run) {
+    for (int run = 0; run < repeats(3); ++run) {
       options.threads = 4;
       const SearchResult four = search(reader_of(map), 2.0, seen, region, options);
       EXPECT_EQ(four.background.rivals, one.background.rivals);

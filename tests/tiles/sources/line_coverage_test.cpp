@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "tests/support/repeats.hpp"
+
 namespace roadfix {
 namespace {
 
@@ -46,8 +48,9 @@ TEST(LineCoverage, EqualsCountingOfPointsForManyRandomRoads) {
     return GridPoint{box.min.east_m + around(random) * box.width_m(),
                      box.min.north_m + around(random) * box.height_m()};
   };
-  for (int trial = 0; trial < 40; ++trial) {
-    const double half_width = 0.4 + 0.25 * trial;
+  constexpr int kTrials = 5 * testing::repeats(8);
+  for (int trial = 0; trial < kTrials; ++trial) {
+    const double half_width = 0.4 + 10.0 * trial / kTrials;
     std::vector<std::array<GridPoint, 2>> roads{{point(), point()}, {point(), point()}};
     if (trial % 5 == 0) roads[1][1] = roads[1][0];                  // a point
     if (trial % 5 == 1) roads[1][1].north_m = roads[1][0].north_m;  // due east

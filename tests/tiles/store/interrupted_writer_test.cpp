@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/repeats.hpp"
 #include "tests/support/room.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 #include "tiles/store/map_writer.hpp"
@@ -167,7 +168,7 @@ TEST(InterruptedWriter, AKilledProcessLosesNothing) {
   const auto expected = tile_bytes(folder / "whole.gpkg");
   const auto version = MapReader(folder / "whole.gpkg").info().version;
 
-  constexpr int kRuns = 16;
+  constexpr int kRuns = 4 * testing::repeats(4);
   for (int run = 0; run < kRuns; ++run) {
     const auto path = folder / (std::to_string(run) + ".gpkg");
     const pid_t child = fork();

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <iterator>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <set>
@@ -306,33 +305,6 @@ TEST_F(OpenApi, GivesExamplesThatAreAsItDescribesThem) {
     }
   }
   EXPECT_GT(examples, 20);
-}
-
-/// Every list of values that are allowed in which the word is.
-std::vector<json> lists_with(const json& node, const char* word) {
-  std::vector<json> lists;
-  if (node.is_object() && node.contains("enum") && std::ranges::find(node["enum"], word) != node["enum"].end()) {
-    lists.push_back(node["enum"]);
-  }
-  for (const json& child : node.is_structured() ? node : json::array()) {
-    std::ranges::copy(lists_with(child, word), std::back_inserter(lists));
-  }
-  return lists;
-}
-
-TEST_F(OpenApi, NamesEveryFormatOfAPositionAndNoOther) {
-  const std::string refusal = testing::message_of([] {
-    api::Fields fields;
-    fields.add({{"format", "morse"}}, api::position_fields());
-    api::parse_position_format({}, fields);
-  });
-  const std::vector<json> lists = lists_with(document_, "gps_input");
-  EXPECT_FALSE(lists.empty());
-  for (const json& list : lists) {
-    std::string words;
-    for (const std::string word : list) words += (words.empty() ? "" : ", ") + word;
-    EXPECT_THAT(refusal, ::testing::EndsWith("one of: " + words));
-  }
 }
 
 TEST_F(OpenApi, RefersOnlyToWhatIsThere) {

@@ -3,9 +3,11 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <variant>
 
 #include "cli/bench/manifest.hpp"
 #include "cli/evaluation/frames_csv.hpp"
+#include "core/detect/frame_camera.hpp"
 #include "core/units/error.hpp"
 
 namespace {
@@ -22,7 +24,8 @@ void read_manifest(std::string_view text) {
 void read_frames(std::string_view text) {
   try {
     for (const auto& frame : roadfix::evaluation::parse_frames_csv(text)) {
-      const double size_m = frame.camera ? frame.camera->agl_m : frame.gsd_m;
+      const auto* camera = std::get_if<roadfix::FrameCamera>(&frame.view);
+      const double size_m = camera ? camera->agl_m : std::get<roadfix::StraightDown>(frame.view).gsd_m;
       if (frame.file.empty() || !(size_m >= 0.0)) std::abort();
     }
   } catch (const roadfix::InvalidInput&) {

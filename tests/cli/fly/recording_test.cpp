@@ -123,7 +123,7 @@ TEST_F(Recordings, KeepTheirPicturesForADetectorElsewhere) {
   options.detector = nullptr;
   const Flight flight = replayed(recorded(kTwoFlights)[0]);
   EXPECT_FALSE(flight[1].input.features);
-  EXPECT_EQ(flight[1].input.frame().image.pixels.at<cv::Vec3b>(3, 4)[1], 30);
+  EXPECT_EQ(flight[1].input.frame().picture.pixels.at<cv::Vec3b>(3, 4)[1], 30);
 }
 
 TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {

@@ -29,14 +29,13 @@ RoadRules rules_of(const IngestArguments& arguments) {
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
+  static const std::map<std::string, SourceMeaning> kMeanings{
+      {"auto", SourceMeaning::kAuto}, {"imagery", SourceMeaning::kImagery}, {"roads", SourceMeaning::kRoads}};
   command
-      .add_option("--as", a.meaning,
-                  "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, SourceMeaning>{{"auto", SourceMeaning::kAuto},
-                                                                               {"imagery", SourceMeaning::kImagery},
-                                                                               {"roads", SourceMeaning::kRoads}})
-                      .description(""))
-      ->type_name("auto|imagery|roads")
+      .add_option_function<std::string>(
+          "--as", [&a](const std::string& word) { a.meaning = kMeanings.at(word); },
+          "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
+      ->check(CLI::IsMember({"auto", "imagery", "roads"}))
       ->default_str("auto");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");

@@ -37,7 +37,7 @@ class OpenApi : public ::testing::Test {
   const json document_ = json::parse(schema::openapi_json());
   const testing::TemporaryFolder folder_{};
   server::MapRegistry maps_{folder_.path(), {.tiles = 1 << 20, .searches = 0}};
-  const Detectors detectors_{{"tree", {}, 1, {}}};
+  const Detectors detectors_{{"tree", {}, {}, {}}};
   const api::Limits limits_{};
   const http::ServerSettings http_{};
   http::Metrics metrics_;

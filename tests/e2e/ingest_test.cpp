@@ -111,7 +111,7 @@ TEST_F(IngestCommand, BadInputGetsOneLineACodeAndNoMap) {
     EXPECT_THAT(result.err, ::testing::HasSubstr(file));
     EXPECT_FALSE(std::filesystem::exists(map("bad.gpkg"))) << file;
   }
-  EXPECT_EQ(ingest({good, "--cell", "3", "--detector", "tree", "--map", map("bad.gpkg")}).code, 1);
+  EXPECT_EQ(ingest({good, "--cell", "3", "--detector", "tree", "--map", map("bad.gpkg")}).code, 2);
   EXPECT_EQ(ingest({good}).code, 2);
   EXPECT_EQ(ingest({good, "--map", map("bad.gpkg"), "--jobs", "0"}).code, 2);
 }

@@ -173,7 +173,7 @@ TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
   };
   EXPECT_EQ(refused({{"map", "nowhere"}}), "404 map-not-found");
   EXPECT_EQ(refused({{"lat", 10.0}, {"lon", 20.0}}), "422 prior-outside-map");
-  EXPECT_EQ(refused({{"filter", "best"}}), "400 bad-parameter filter");
+  EXPECT_EQ(refused({{"filter", "paper"}}), "400 unknown-field filter");
   EXPECT_EQ(refused({{"particles", 1'000'000'000}}), "400 parameter-out-of-range particles");
   EXPECT_EQ(refused({{"color", 1}}), "400 unknown-field color");
   for (const char* without_speed : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {

@@ -68,7 +68,7 @@ TEST_F(TwoNetworks, AreBothDescribed) {
 }
 
 TEST(OneDetector, ReadsTheFramesOfAllMaps) {
-  const Detectors detectors({"tree", {}, 1, {}});
+  const Detectors detectors({"tree", {}, {}, {}});
   EXPECT_EQ(detectors.compared_with(ComparedWith::kImagery), detectors.compared_with(ComparedWith::kRoads));
   EXPECT_EQ(detectors.describe(), detectors.for_map("")->describe());
   EXPECT_EQ(detectors.for_map("")->describe(), detectors.for_map("neural roadnet-7 fnv1a64=1")->describe());

@@ -1,5 +1,6 @@
 #include "core/detect/make_detector.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -100,8 +101,8 @@ TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
 }
 
 TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
-  EXPECT_EQ(make_detector({"tree", {}, 1, {}}, ComparedWith::kImagery)->describe().substr(0, 5), "tree ");
-  EXPECT_EQ(refusal({"tree", model(), 1, {}}), "model-without-network");
+  EXPECT_EQ(make_detector({"tree", {}, {}, {}}, ComparedWith::kImagery)->describe().substr(0, 5), "tree ");
+  EXPECT_EQ(refusal({"tree", model(), {}, {}}), "model-without-network");
 }
 
 TEST_F(MakeDetector, WhatIsSaidOfTheOtherDetectorIsRefused) {
@@ -109,8 +110,16 @@ TEST_F(MakeDetector, WhatIsSaidOfTheOtherDetectorIsRefused) {
   denser.trees_per_km2 = 5000;
   EXPECT_EQ(refusal({"neural", model(), 1, denser}), "option-without-effect");
   EXPECT_EQ(refusal({"auto", model(), 1, denser}), "option-without-effect");
-  EXPECT_EQ(refusal({"tree", {}, 1, denser}), "accepted");
+  EXPECT_EQ(refusal({"tree", {}, {}, denser}), "accepted");
   EXPECT_EQ(refusal({"tree", {}, 8, {}}), "option-without-effect");
+}
+
+TEST_F(MakeDetector, ReadsTheImageryOfMapsInFourOrientationsUnlessToldAndFramesInOne) {
+  EXPECT_THAT(make_map_detector({"neural", model(), {}, {}})->describe(), ::testing::HasSubstr("orientations=4"));
+  EXPECT_THAT(make_map_detector({"neural", model(), 1, {}})->describe(), ::testing::HasSubstr("orientations=1"));
+  EXPECT_THAT(make_detector({"neural", model(), {}, {}}, ComparedWith::kImagery)->describe(),
+              ::testing::HasSubstr("orientations=1"));
+  EXPECT_EQ(make_map_detector({"tree", {}, {}, {}})->describe().substr(0, 5), "tree ");
 }
 
 TEST_F(MakeDetector, EitherShippedNetworkFitsItsDescription) {

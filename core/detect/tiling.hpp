@@ -25,8 +25,9 @@ std::vector<int> tile_starts(int length, const TilePlan& plan);
 /// overlap's middle half. Two neighbours' weights sum to 1 where both count.
 std::vector<float> blend_weights(int cells, int overlap_cells);
 
-/// Calls `run`, from several threads, with the part of each tile around what is `wanted` (CV_8UC1 of the picture's size, nonzero = wanted),
-/// and blends the returned CV_32FC1 of rectangle / stride cells. Cells that nothing was run for are 0.
+/// Calls `run`, from several threads, with the part of each tile around what is `wanted` (CV_8UC1 of the picture's
+/// size, nonzero = wanted), and blends the returned CV_32FC1 of rectangle / stride cells. Cells that nothing was run
+/// for are 0.
 cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::function<cv::Mat(const cv::Rect&)>& run);
 
 }  // namespace roadfix

@@ -108,8 +108,10 @@ class OneDnnPlan::Maker {
     const Dims weights{by.outputs, by.inputs, by.kernel[0], by.kernel[1]};
     std::unordered_map<int, memory> arguments{
         {DNNL_ARG_SRC, laid_out(from, found.src_desc())},
-        {DNNL_ARG_WEIGHTS, constant(by.weights, {weights, kFloat, memory::format_tag::oihw}, found.weights_desc())},
-        {DNNL_ARG_BIAS, constant(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
+        {DNNL_ARG_WEIGHTS,
+         constants_.laid_out(by.weights, {weights, kFloat, memory::format_tag::oihw}, found.weights_desc())},
+        {DNNL_ARG_BIAS,
+         constants_.laid_out(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
     const Held to = adds ? to_be_added_to(layer.inputs[1], found.dst_desc()) : held(found.dst_desc());
     add<dnnl::convolution_forward>(found, std::move(arguments), to);
     return to;
@@ -198,10 +200,6 @@ class OneDnnPlan::Maker {
     const dnnl::reorder::primitive_desc found(processor(), from.get_desc(), processor(), to.memory.get_desc(),
                                               attributes({}));
     add<dnnl::reorder>(found, {{DNNL_ARG_FROM, from}}, to);
-  }
-
-  memory constant(const std::vector<float>& values, const memory::desc& given, const memory::desc& layout) {
-    return constants_.laid_out(values, given, layout);
   }
 
   /// In the smallest free buffer that has the room, or a new one.

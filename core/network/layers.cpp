@@ -132,12 +132,12 @@ class Reader {
     add({Layer::Kind::kConvolution, {from}, read.outputs, false, std::move(read)}, node);
   }
 
-  /// Belongs to the layer before it, whose output nobody else takes.
+  /// Belongs to the layer that it takes, whose output nobody else does.
   void read_rectifier(const onnx::NodeProto& node) {
     require(node.input_size() == 1);
     const int of = layer(node.input(0));
-    require(of == last() && users_[node.input(0)] == 1);
-    layers_.back().rectified = true;
+    require(of != Layer::kPicture && users_[node.input(0)] == 1);
+    layers_[static_cast<std::size_t>(of)].rectified = true;
     give(node.output(0), of);
   }
 

@@ -69,9 +69,9 @@ TEST(NetworkLayers, AreNotReadFromADamagedFile) {
 TEST(NetworkLayers, FitTogetherOnlyWhereWhatIsAddedHasOneSize) {
   OnnxFile file(1);
   const std::string half = file.convolution("picture", {.inputs = 3, .outputs = 1, .stride = 2});
-  const std::string whole = file.twice(half);
-  const std::string valid = file.convolution("picture", {.inputs = 3, .outputs = 1});
-  const auto layers = read_layers(file.bytes(file.sum(file.twice(half), file.rectified(valid))));
+  const std::string whole = file.convolution("picture", {.inputs = 3, .outputs = 1});
+  const std::string doubled = file.twice(half);
+  const auto layers = read_layers(file.bytes(file.sum(doubled, file.rectified(whole))));
   ASSERT_TRUE(layers);
   EXPECT_TRUE(output_sides(*layers, {8, 6}));
   EXPECT_FALSE(output_sides(*layers, {7, 6}));

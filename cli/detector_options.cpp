@@ -1,5 +1,7 @@
 #include "cli/detector_options.hpp"
 
+#include <fmt/format.h>
+
 #include <map>
 #include <string>
 #include <vector>

@@ -112,7 +112,7 @@ class OneDnnPlan::Maker {
          constants_.laid_out(by.weights, {weights, kFloat, memory::format_tag::oihw}, found.weights_desc())},
         {DNNL_ARG_BIAS,
          constants_.laid_out(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
-    const Held to = adds ? to_be_added_to(layer.inputs[1], found.dst_desc()) : held(found.dst_desc());
+    Held to = adds ? to_be_added_to(layer.inputs[1], found.dst_desc()) : held(found.dst_desc());
     add<dnnl::convolution_forward>(found, std::move(arguments), to);
     return to;
   }
@@ -122,7 +122,7 @@ class OneDnnPlan::Maker {
     const memory second = laid_out(input(layer, 1), first.get_desc());
     const dnnl::binary::desc asked(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(), first.get_desc());
     const dnnl::binary::primitive_desc found(asked, attributes(layer), processor());
-    const Held to = held(found.dst_desc());
+    Held to = held(found.dst_desc());
     add<dnnl::binary>(found, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}}, to);
     return to;
   }
@@ -135,7 +135,7 @@ class OneDnnPlan::Maker {
     const dnnl::resampling_forward::desc asked(dnnl::prop_kind::forward_inference, dnnl::algorithm::resampling_nearest,
                                                from.get_desc(), in_any_layout(dims));
     const dnnl::resampling_forward::primitive_desc found(asked, attributes(layer), processor());
-    const Held to = held(found.dst_desc());
+    Held to = held(found.dst_desc());
     add<dnnl::resampling_forward>(found, {{DNNL_ARG_SRC, from}}, to);
     return to;
   }
@@ -148,7 +148,7 @@ class OneDnnPlan::Maker {
       arguments.emplace(DNNL_ARG_MULTIPLE_SRC + static_cast<int>(i), input(layer, i));
     }
     const dnnl::concat::primitive_desc found(1, parts, processor(), attributes(layer));
-    const Held to = held(found.dst_desc());
+    Held to = held(found.dst_desc());
     add<dnnl::concat>(found, std::move(arguments), to);
     return to;
   }
@@ -178,7 +178,7 @@ class OneDnnPlan::Maker {
   /// The same values in another layout; passing, as all that is made for one step only.
   memory laid_out(const memory& from, const memory::desc& layout) {
     if (from.get_desc() == layout) return from;
-    const Held to = held(layout);
+    Held to = held(layout);
     passing_.push_back(to.buffer);
     copy(from, to);
     return to.memory;
@@ -191,7 +191,7 @@ class OneDnnPlan::Maker {
       last_reader_[static_cast<std::size_t>(layer)] = layers_.size();  // its buffer is the new layer's from now on
       return from;
     }
-    const Held to = held(layout);
+    Held to = held(layout);
     copy(from.memory, to);
     return to;
   }

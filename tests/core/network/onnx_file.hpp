@@ -32,8 +32,8 @@ class OnnxFile {
   std::string convolution(const std::string& of, const Shape& shape) {
     onnx::NodeProto& node = this->node(
         "Conv", {of, tensor({shape.outputs, shape.inputs, shape.kernel[0], shape.kernel[1]}), tensor({shape.outputs})});
-    const std::int64_t down = shape.kernel[0] / 2 * shape.dilation;
-    const std::int64_t right = shape.kernel[1] / 2 * shape.dilation;
+    const int down = shape.kernel[0] / 2 * shape.dilation;
+    const int right = shape.kernel[1] / 2 * shape.dilation;
     add(node, "kernel_shape", {shape.kernel[0], shape.kernel[1]});
     add(node, "strides", {shape.stride, shape.stride});
     add(node, "dilations", {shape.dilation, shape.dilation});

@@ -75,7 +75,7 @@ TEST_F(Campaigns, TellOneStepAfterAnotherHoweverManyFlyAtATime) {
   std::vector<std::int64_t> told;
   campaign.progress = [&](std::int64_t done, std::int64_t) { told.push_back(done); };
   run(campaign, map.zone);
-  std::vector<std::int64_t> counted(2 * 6 * 3);  // of each flight all steps as they are flown, and by each filter
+  std::vector<std::int64_t> counted(36);  // 2 x 6 x 3: of each flight all steps as they are flown, and by each filter
   std::iota(counted.begin(), counted.end(), 1);
   EXPECT_EQ(told, counted);
 }

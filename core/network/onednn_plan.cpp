@@ -113,8 +113,7 @@ class OneDnnPlan::Maker {
         {DNNL_ARG_BIAS,
          constants_.laid_out(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
     Held to = adds ? to_be_added_to(layer.inputs[1], found.dst_desc()) : held(found.dst_desc());
-    add<dnnl::convolution_forward>(found, std::move(arguments), to);
-    return to;
+    return added<dnnl::convolution_forward>(found, std::move(arguments), std::move(to));
   }
 
   Held sum(const Layer& layer) {
@@ -122,9 +121,7 @@ class OneDnnPlan::Maker {
     const memory second = laid_out(input(layer, 1), first.get_desc());
     const dnnl::binary::desc asked(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(), first.get_desc());
     const dnnl::binary::primitive_desc found(asked, attributes(layer), processor());
-    Held to = held(found.dst_desc());
-    add<dnnl::binary>(found, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}}, to);
-    return to;
+    return added<dnnl::binary>(found, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}}, held(found.dst_desc()));
   }
 
   Held twice(const Layer& layer) {
@@ -135,9 +132,7 @@ class OneDnnPlan::Maker {
     const dnnl::resampling_forward::desc asked(dnnl::prop_kind::forward_inference, dnnl::algorithm::resampling_nearest,
                                                from.get_desc(), in_any_layout(dims));
     const dnnl::resampling_forward::primitive_desc found(asked, attributes(layer), processor());
-    Held to = held(found.dst_desc());
-    add<dnnl::resampling_forward>(found, {{DNNL_ARG_SRC, from}}, to);
-    return to;
+    return added<dnnl::resampling_forward>(found, {{DNNL_ARG_SRC, from}}, held(found.dst_desc()));
   }
 
   Held channels(const Layer& layer) {
@@ -148,9 +143,7 @@ class OneDnnPlan::Maker {
       arguments.emplace(DNNL_ARG_MULTIPLE_SRC + static_cast<int>(i), input(layer, i));
     }
     const dnnl::concat::primitive_desc found(1, parts, processor(), attributes(layer));
-    Held to = held(found.dst_desc());
-    add<dnnl::concat>(found, std::move(arguments), to);
-    return to;
+    return added<dnnl::concat>(found, std::move(arguments), held(found.dst_desc()));
   }
 
   static dnnl::primitive_attr attributes(const Layer& layer, bool adds = false) {
@@ -169,10 +162,11 @@ class OneDnnPlan::Maker {
   }
 
   template <typename Primitive, typename Description>
-  void add(const Description& found, std::unordered_map<int, memory> arguments, const Held& to) {
+  Held added(const Description& found, std::unordered_map<int, memory> arguments, Held to) {
     scratch_bytes_ = std::max(scratch_bytes_, found.scratchpad_desc().get_size());
     arguments.emplace(DNNL_ARG_DST, to.memory);
     plan_.steps_.push_back({Primitive(found), std::move(arguments)});
+    return to;
   }
 
   /// The same values in another layout; passing, as all that is made for one step only.
@@ -180,8 +174,7 @@ class OneDnnPlan::Maker {
     if (from.get_desc() == layout) return from;
     Held to = held(layout);
     passing_.push_back(to.buffer);
-    copy(from, to);
-    return to.memory;
+    return copied(from, std::move(to)).memory;
   }
 
   /// What a layer gave, in this layout and to be overwritten: itself, where this is the last one to read it.
@@ -191,15 +184,13 @@ class OneDnnPlan::Maker {
       last_reader_[static_cast<std::size_t>(layer)] = layers_.size();  // its buffer is the new layer's from now on
       return from;
     }
-    Held to = held(layout);
-    copy(from.memory, to);
-    return to;
+    return copied(from.memory, held(layout));
   }
 
-  void copy(const memory& from, const Held& to) {
+  Held copied(const memory& from, Held to) {
     const dnnl::reorder::primitive_desc found(processor(), from.get_desc(), processor(), to.memory.get_desc(),
                                               attributes({}));
-    add<dnnl::reorder>(found, {{DNNL_ARG_FROM, from}}, to);
+    return added<dnnl::reorder>(found, {{DNNL_ARG_FROM, from}}, std::move(to));
   }
 
   /// In the smallest free buffer that has the room, or a new one.

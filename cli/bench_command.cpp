@@ -142,7 +142,7 @@ void learn_headings(const BenchArguments& arguments, const nlohmann::json& origi
 }
 
 /// Of imagery.
-std::shared_ptr<const RoadDetector> detector_of_maps(const BenchArguments& arguments) {
+std::unique_ptr<RoadDetector> detector_of_maps(const BenchArguments& arguments) {
   DetectorChoice choice = arguments.detector;
   choice.orientations = arguments.map_orientations;
   return make_map_detector(choice);
@@ -158,7 +158,7 @@ void run_bench(BenchArguments& arguments) {
   require_folder(arguments.options.pictures);
   if (!arguments.calibrate_headings_file.empty()) read_calibration(arguments.calibrate_headings_file);
   const Detectors detectors(arguments.detector);
-  const std::shared_ptr<const RoadDetector> map_detector = detector_of_maps(arguments);
+  const std::unique_ptr<RoadDetector> map_detector = detector_of_maps(arguments);
   TaskProgress building("blocks");
   TaskProgress asking("queries");
   bench::BenchOptions& options = arguments.options;

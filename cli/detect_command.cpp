@@ -35,8 +35,8 @@ namespace {
 
 struct DetectOptions {
   DetectorChoice detector;
-  std::optional<ComparedWith> compared;  ///< nullopt = imagery
-  std::vector<std::string> names;        ///< pictures, then the target
+  std::optional<SourceContent> compared;  ///< nullopt = imagery
+  std::vector<std::string> names;         ///< pictures, then the target
   FrameOptions frame;
   double cell_m = 2.0;
   std::uint64_t seed = 1;
@@ -148,7 +148,7 @@ std::unique_ptr<RoadDetector> detector_of(const DetectOptions& options) {
         "or ROADFIX_MODEL, or the only one that is installed: leave it out");
   }
   note_missing_network(options.detector);
-  return make_detector(options.detector, options.compared.value_or(ComparedWith::kImagery));
+  return make_detector(options.detector, options.compared.value_or(SourceContent::kImagery));
 }
 
 void detect(const DetectOptions& options, const Job& job, const RoadDetector& detector) {
@@ -256,15 +256,13 @@ void add_detect_command(CLI::App& app) {
       ->capture_default_str()
       ->check(seed());
   command->add_flag("--json", options->json, "Answer as JSON");
+  constexpr auto kWords = words_in(kSourceContents);
   command
       ->add_option_function<std::string>(
-          "--compare-with",
-          [options](const std::string& word) {
-            options->compared = word == kComparedWithNames[0] ? ComparedWith::kImagery : ComparedWith::kRoads;
-          },
+          "--compare-with", [options](const std::string& word) { options->compared = value_of(kSourceContents, word); },
           "What the map shows that the feature map is for: imagery (default) or roads, that is road data. Each has its "
           "network")
-      ->check(CLI::IsMember(std::vector<std::string>(kComparedWithNames.begin(), kComparedWithNames.end())));
+      ->check(CLI::IsMember(std::vector<std::string>(kWords.begin(), kWords.end())));
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });
 }

@@ -63,8 +63,8 @@ void print_source(const SourceStatus& source) {
   const SourceRecord& r = source.record;
   const Provenance& p = r.provenance;
   const std::string state = state_of(source);
-  fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name, r.kind, state,
-             r.location, r.method);
+  fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name,
+             to_string(r.content), state, r.location, r.method);
   for (const auto& [label, value] :
        {std::pair{"date", p.date}, std::pair{"licence", p.licence}, std::pair{"attribution", p.attribution}}) {
     if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);

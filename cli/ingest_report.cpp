@@ -28,7 +28,7 @@ nlohmann::json summary_json(const SourceRecord& record, const SourceSummary& sum
                             const MapSettings& settings) {
   const double side_km = kTileCells * settings.cell_m / 1e3;
   nlohmann::json json{{"source", record.name},
-                      {"kind", record.kind},
+                      {"kind", to_string(record.content)},
                       {"files_crs", summary.crs},
                       {"map_crs", fmt::format("EPSG:{}", settings.zone.epsg())},
                       {"cell_m", settings.cell_m},

@@ -37,8 +37,8 @@ void note_missing_network(const DetectorChoice& choice) {
 
 void note_other_reader(const std::string& feature_map, const std::string& reader, const MapView& map,
                        const DetectorChoice& choice) {
-  const bool of_roads = map.imagery_reader.empty();
-  const std::string best = of_roads ? make_detector(choice, ComparedWith::kRoads)->describe() : map.imagery_reader;
+  const bool of_roads = !map.imagery_reader;
+  const std::string best = of_roads ? make_detector(choice, SourceContent::kRoads)->describe() : *map.imagery_reader;
   if (is_same_reader(reader, best)) return;
   fmt::print(stderr,
              "note: the roads of {} were found by {}, and {} suits {} best: fixes are fewer. Detect them again with "
@@ -61,7 +61,7 @@ std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const Detec
     fmt::print(stderr,
                "note: {} was read by {}, and frames are by {}: they find other roads, and fixes are fewer. Name the "
                "map's network with --model, or ingest its imagery anew\n",
-               map.name, map.imagery_reader, detector->describe());
+               map.name, *map.imagery_reader, detector->describe());
   }
   return detector;
 }

@@ -4,6 +4,8 @@
 
 #include <exception>
 #include <limits>
+#include <optional>
+#include <string>
 #include <utility>
 
 #include "server/api/problem.hpp"
@@ -32,10 +34,10 @@ void tidy(TrackRegistry& tracks) {
 }
 
 void warn_of_another_reader(const ServedMap& map, const Detectors& detectors) {
-  const std::string& reader = map.view.imagery_reader;
+  const std::optional<std::string>& reader = map.view.imagery_reader;
   if (detectors.include_reader(reader)) return;
   spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer", map.name,
-               reader);
+               *reader);
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/detect/make_detector.hpp"
 
@@ -13,10 +13,11 @@ namespace roadfix {
 bool is_one_for_both(const DetectorChoice& choice);
 
 /// What Detectors::for_map() gives, without loading a network that is not asked. Throws what make_detector() does.
-std::shared_ptr<const RoadDetector> detector_for_map(const DetectorChoice& choice, std::string_view imagery_reader);
+std::shared_ptr<const RoadDetector> detector_for_map(const DetectorChoice& choice,
+                                                     const std::optional<std::string>& imagery_reader);
 
 /// Whether the detector for frames over a map is the one that read its imagery, if it has any.
-bool is_reader_of(const RoadDetector& detector, std::string_view imagery_reader);
+bool is_reader_of(const RoadDetector& detector, const std::optional<std::string>& imagery_reader);
 
 class Detectors {
  public:
@@ -25,14 +26,14 @@ class Detectors {
   /// One for all maps.
   explicit Detectors(std::shared_ptr<const RoadDetector> detector);
 
-  std::shared_ptr<const RoadDetector> compared_with(ComparedWith compared) const;
+  std::shared_ptr<const RoadDetector> compared_with(SourceContent compared) const;
 
   /// `imagery_reader` is MapView::imagery_reader. A map that is read by a detector that is not among these gets the one
   /// for imagery.
-  std::shared_ptr<const RoadDetector> for_map(std::string_view imagery_reader) const;
+  std::shared_ptr<const RoadDetector> for_map(const std::optional<std::string>& imagery_reader) const;
 
   /// Whether one of them read the map's imagery, if it has any.
-  bool include_reader(std::string_view imagery_reader) const;
+  bool include_reader(const std::optional<std::string>& imagery_reader) const;
 
   /// One line that names them.
   std::string describe() const;

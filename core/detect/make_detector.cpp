@@ -15,7 +15,7 @@ std::optional<std::string> note_on_missing_network(const DetectorChoice& choice)
   return is_left_to_default(choice) ? note_on_missing_network() : std::nullopt;
 }
 
-std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared) {
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, SourceContent compared) {
   if (std::ranges::find(kDetectorNames, choice.name) == kDetectorNames.end()) {
     throw InvalidInput("unknown-detector", fmt::format("\"{}\" is not a detector: choose one of {}.", choice.name,
                                                        fmt::join(kDetectorNames, ", ")));
@@ -46,7 +46,7 @@ std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, Compar
 
 std::unique_ptr<RoadDetector> make_map_detector(DetectorChoice choice) {
   if (choice.name != "tree" && !choice.orientations) choice.orientations = kMapOrientations;
-  return make_detector(choice, ComparedWith::kImagery);
+  return make_detector(choice, SourceContent::kImagery);
 }
 
 }  // namespace roadfix

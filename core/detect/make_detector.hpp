@@ -38,7 +38,7 @@ std::optional<std::string> note_on_missing_network(const DetectorChoice& choice)
 
 /// InvalidInput "unknown-detector", "model-missing" (no weights found), "model-without-network",
 /// "option-without-effect" (of the other detector) and those of the detectors' constructors.
-std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, ComparedWith compared);
+std::unique_ptr<RoadDetector> make_detector(const DetectorChoice& choice, SourceContent compared);
 
 /// The same, for the imagery of a map.
 std::unique_ptr<RoadDetector> make_map_detector(DetectorChoice choice);

@@ -12,22 +12,26 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the order of ComparedWith.
-constexpr std::array<const char*, 2> kShipped{"roadnet-imagery.onnx", "roadnet.onnx"};
+constexpr const char* shipped(SourceContent compared) {
+  return compared == SourceContent::kImagery ? "roadnet-imagery.onnx" : "roadnet.onnx";
+}
+
+constexpr SourceContent other_than(SourceContent compared) {
+  return compared == SourceContent::kImagery ? SourceContent::kRoads : SourceContent::kImagery;
+}
 
 std::optional<fs::path> named_by_environment() {
   const char* named = std::getenv("ROADFIX_MODEL");
   return named != nullptr && *named != '\0' ? std::optional<fs::path>(named) : std::nullopt;
 }
 
-std::vector<fs::path> shipped_in(const fs::path& folder, ComparedWith compared) {
-  const auto own = static_cast<std::size_t>(compared);
-  return {folder / kShipped.at(own), folder / kShipped.at(1 - own)};
+std::vector<fs::path> shipped_in(const fs::path& folder, SourceContent compared) {
+  return {folder / shipped(compared), folder / shipped(other_than(compared))};
 }
 
 }  // namespace
 
-std::optional<fs::path> default_model(ComparedWith compared) {
+std::optional<fs::path> default_model(SourceContent compared) {
   if (auto named = named_by_environment()) {
     if (fs::is_regular_file(*named)) return named;
     throw InvalidInput("model-missing",
@@ -46,14 +50,14 @@ std::optional<fs::path> default_model(ComparedWith compared) {
   return std::nullopt;
 }
 
-std::optional<std::string> stood_in_for(const fs::path& model, ComparedWith compared) {
-  const auto own = static_cast<std::size_t>(compared);
-  return model.filename() == kShipped.at(1 - own) ? std::optional<std::string>(kShipped.at(own)) : std::nullopt;
+std::optional<std::string> stood_in_for(const fs::path& model, SourceContent compared) {
+  return model.filename() == shipped(other_than(compared)) ? std::optional<std::string>(shipped(compared))
+                                                           : std::nullopt;
 }
 
 std::optional<std::string> note_on_missing_network() {
   if (named_by_environment()) return std::nullopt;
-  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+  for (const SourceContent compared : {SourceContent::kImagery, SourceContent::kRoads}) {
     const auto model = default_model(compared);
     const auto missing = model ? stood_in_for(*model, compared) : std::nullopt;
     if (!missing) continue;

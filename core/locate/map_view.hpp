@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/geodesy/utm.hpp"
@@ -18,9 +19,9 @@ struct MapView {
   UtmZone zone;
   double cell_m = 2.0;
   GridBox extent;  ///< box of the observed cells
-  /// RoadDetector::describe() of what read most of the map's ground in imagery; empty where more of it, or all, is road
-  /// data. Frames that are compared with the map are best read by the same (Detectors).
-  std::string imagery_reader = {};
+  /// RoadDetector::describe() of what read most of the map's ground in imagery; nullopt where more of it, or all, is
+  /// road data. Frames that are compared with the map are best read by the same (Detectors).
+  std::optional<std::string> imagery_reader = {};
   /// Position error (1 sigma per axis) of the least exact of the sources that observed the ground around a place;
   /// beyond them all, of all. Safe to call from several threads.
   std::function<double(GridPoint place)> registration_sigma_m;

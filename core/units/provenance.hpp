@@ -1,11 +1,22 @@
 // What is told of a source of a map beside its cells.
 #pragma once
 
+#include <array>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "core/units/words.hpp"
+
 namespace roadfix {
+
+/// Pictures in which roads are found, or roads as data.
+enum class SourceContent { kImagery, kRoads };
+
+/// As maps, requests and answers name it.
+inline constexpr std::array<Word<SourceContent>, 2> kSourceContents{
+    {{"imagery", SourceContent::kImagery}, {"roads", SourceContent::kRoads}}};
+constexpr std::string_view to_string(SourceContent content) { return word_of(kSourceContents, content); }
 
 /// Empty and 0 where nothing is told.
 struct Provenance {

@@ -2,6 +2,8 @@
 // complaint names the field.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
@@ -14,6 +16,7 @@
 #include <vector>
 
 #include "core/units/angle.hpp"
+#include "core/units/words.hpp"
 #include "server/http/message.hpp"
 
 namespace roadfix::api {
@@ -58,6 +61,11 @@ class Fields {
   std::string take_text(const std::string& name);
   /// One of the words; the first where the field is absent.
   std::string word(const std::string& name, std::span<const std::string_view> words) const;
+  /// The value of one of the words, likewise.
+  template <typename E, std::size_t N>
+  E choice(const std::string& name, const std::array<Word<E>, N>& words) const {
+    return value_of(words, word(name, words_in(words))).value();
+  }
   /// JSON's true and false, or text of that; false where the field is absent.
   bool flag(const std::string& name) const;
   /// So many numbers: a JSON array, or text with commas between them.

@@ -8,7 +8,7 @@ json to_json(const SourceStatus& source) {
   const SourceRecord& r = source.record;
   const Provenance& p = r.provenance;
   json answer{{"name", r.name},
-              {"kind", r.kind},
+              {"kind", to_string(r.content)},
               {"date", p.date},
               {"licence", p.licence},
               {"attribution", p.attribution},

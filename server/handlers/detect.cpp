@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 
 #include "core/detect/feature_map_codec.hpp"
@@ -20,16 +19,11 @@ constexpr std::array<api::Media, 2> kDetectFormats{{{"png", "image/png"}, {"json
 
 std::vector<std::string> detect_fields() { return joined({api::frame_fields(), {"compare_with", "format"}}); }
 
-ComparedWith compared_with(const api::Fields& fields) {
-  const std::string word = fields.word("compare_with", kComparedWithNames);
-  return static_cast<ComparedWith>(std::ranges::find(kComparedWithNames, word) - kComparedWithNames.begin());
-}
-
 http::Response post_detect(const Service& service, const http::Request& request) {
   const api::Content content = api::read_content(request, joined({detect_fields(), {"image"}}), service.limits);
   const std::string_view format = api::media_asked_for(request, content.fields, kDetectFormats).name;
   const api::TimeLimit limit(request.deadline, request.abandoned);
-  const auto detector = service.detectors.compared_with(compared_with(content.fields));
+  const auto detector = service.detectors.compared_with(content.fields.choice("compare_with", kSourceContents));
   const api::Features features = api::detected(content, {*detector, kDefaultCellM, limit.token()}, service.limits);
   http::Response response;
   if (format == "json") {

@@ -74,7 +74,7 @@ void detect(benchmark::State& state, const RoadDetector& detector, double gsd_m)
 void detect_by_tree(benchmark::State& state) { detect(state, TreeRoadDetector(TreeDetectorOptions{}), kGsdM); }
 
 void detect_by_network(benchmark::State& state) {
-  const auto model = default_model(ComparedWith::kImagery);
+  const auto model = default_model(SourceContent::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;
@@ -113,7 +113,7 @@ void ingest_all(benchmark::State& state, const RoadDetector& detector, int jobs)
     MapWriter writer(town().file("map.gpkg"), settings);
     SourceRecord record;
     record.name = "town";
-    record.kind = "imagery";
+    record.content = SourceContent::kImagery;
     record.fingerprint = source->summary().fingerprint;
     ingest(*source, record, writer, {.jobs = jobs});
   }
@@ -123,7 +123,7 @@ void ingest_all(benchmark::State& state, const RoadDetector& detector, int jobs)
 void read_store_and_fuse(benchmark::State& state) { ingest_all(state, GradientDetector(), 1); }
 
 void ingest_by_network(benchmark::State& state) {
-  const auto model = default_model(ComparedWith::kImagery);
+  const auto model = default_model(SourceContent::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;

@@ -17,7 +17,7 @@ GroundImage noise(int side) {
 }
 
 void detect(benchmark::State& state) {
-  const auto model = default_model(ComparedWith::kImagery);
+  const auto model = default_model(SourceContent::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;
@@ -38,7 +38,7 @@ BENCHMARK(detect)
     ->Unit(benchmark::kMillisecond);
 
 void bare_network(benchmark::State& state) {
-  const auto model = default_model(ComparedWith::kImagery);
+  const auto model = default_model(SourceContent::kImagery);
   if (!model) {
     state.SkipWithError("no weights: set ROADFIX_MODEL");
     return;

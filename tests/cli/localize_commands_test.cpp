@@ -154,7 +154,7 @@ TEST_F(FixOfSeveralPictures, IsInTheTableUpToWhateverEndsTheCommand) {
     // Of less certain ground there is more to be asked of the map for every picture.
     MapWriter writer = MapWriter::existing(map);
     const SourceRecord less_certain{
-        .name = "b", .kind = "roads", .fingerprint = "b", .provenance = {.registration_sigma_m = 9.0}};
+        .name = "b", .content = SourceContent::kRoads, .fingerprint = "b", .provenance = {.registration_sigma_m = 9.0}};
     const TileIndex block = tiles_covering(town.geometry).front();
     writer.begin_source(less_certain, std::vector{block}, false);
     testing::put_block(writer, "b", block, CellArray(kTileCells, kTileCells));
@@ -265,8 +265,10 @@ TEST_F(LocalizeCommands, FixNotesThatAFrameIsReadByAnotherDetectorThanTheMap) {
   save(photo, folder / "frame.jpg");
   const std::string frame = " " + (folder / "frame.jpg").string() + " --gsd 2 --detector tree";
   EXPECT_EQ(roadfix("fix " + map.string() + frame).err.find("was read by"), std::string::npos) << "it is of road data";
-  SourceRecord imagery{
-      .name = "imagery", .kind = "imagery", .fingerprint = "1", .method = "neural x fnv1a64=1 gsd_m=1; 1"};
+  SourceRecord imagery{.name = "imagery",
+                       .content = SourceContent::kImagery,
+                       .fingerprint = "1",
+                       .method = "neural x fnv1a64=1 gsd_m=1; 1"};
   {
     MapWriter writer(map, {zone, 2.0});
     const auto blocks = tiles_covering(town.geometry);

@@ -247,7 +247,7 @@ TEST_F(OpenApi, StatesTheRangesOfNumbersThatAreTaken) {
     api::Content content{{}, frame, true};
     content.fields.add(body, api::frame_fields());
     content.fields.add_text("gsd_m", "0.5");
-    api::detected(content, {*detectors_.for_map(""), 2.0}, limits_);
+    api::detected(content, {*detectors_.for_map(std::nullopt), 2.0}, limits_);
   });
 }
 

@@ -192,7 +192,7 @@ TEST_F(ServiceFix, ScoresPosesInTheirOrder) {
 }
 
 TEST_F(ServiceFix, AFrameOverRoadDataIsReadAsAFeatureMapToBeComparedWithRoads) {
-  if (default_model(ComparedWith::kImagery) == default_model(ComparedWith::kRoads)) {
+  if (default_model(SourceContent::kImagery) == default_model(SourceContent::kRoads)) {
     GTEST_SKIP() << "models/roadnet*.onnx are not both there";
   }
   const testing::ServiceProcess neural(folder->path(), {"--detector", "neural"});

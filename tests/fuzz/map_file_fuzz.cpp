@@ -32,7 +32,7 @@ std::string small_map() {
     MapWriter writer(path, {*UtmZone::from_epsg(32637), 16.0});
     const TileIndex block{100, -1000};
     const SourceRecord source{
-        .name = "a", .kind = "roads", .fingerprint = "1", .provenance = {.registration_sigma_m = 1.0}};
+        .name = "a", .content = SourceContent::kRoads, .fingerprint = "1", .provenance = {.registration_sigma_m = 1.0}};
     writer.begin_source(source, {&block, 1}, false);
     testing::put_block(writer, "a", block, CellArray(kTileCells, kTileCells, kRoad));
     writer.finish_source("a");

@@ -14,7 +14,7 @@ inline void write_map_file(const std::filesystem::path& path, const RoadGrid& gr
                            const UtmZone& zone = UtmZone::from_epsg(32634).value()) {
   MapWriter writer(path, {zone, grid.geometry.cell_m});
   const SourceRecord record{.name = "town",
-                            .kind = "roads",
+                            .content = SourceContent::kRoads,
                             .location = "town.geojson",
                             .fingerprint = "town",
                             .method = "drawn",

@@ -47,7 +47,7 @@ SourceSummary summary_of(const CellSource& source, const SourceFiles& files) {
 
 SourceRecord record_of(const SourceFiles& files, const SourceSummary& summary, std::uint64_t seed) {
   return {.name = files.name,
-          .kind = summary.kind == SourceKind::kImagery ? "imagery" : "roads",
+          .content = summary.kind == SourceKind::kImagery ? SourceContent::kImagery : SourceContent::kRoads,
           .location = files.location,
           .fingerprint = fmt::format("{}-seed{}", summary.fingerprint, seed),
           .method = summary.method,

@@ -66,26 +66,25 @@ Provenance provenance_of(const MapInfo& info) { return combined(parts_of(info));
 
 std::string credits_of(const MapInfo& info) { return credits_of(parts_of(info)); }
 
-std::string imagery_reader_of(const MapInfo& info) {
+std::optional<std::string> imagery_reader_of(const MapInfo& info) {
   std::int64_t of_roads = 0;
   std::map<std::string, std::int64_t> of_readers;
   for (const SourceStatus& source : info.sources) {
     if (!source.complete) continue;
-    const bool imagery = source.record.kind == "imagery";
+    const bool imagery = source.record.content == SourceContent::kImagery;
     const std::string reader(detector_in(source.record.method));
     (imagery ? of_readers[reader] : of_roads) += source.blocks_total;
   }
   const auto most = std::ranges::max_element(of_readers, {}, [](const auto& reader) { return reader.second; });
-  return most != of_readers.end() && most->second >= of_roads ? most->first : "";
+  return most != of_readers.end() && most->second >= of_roads ? std::optional(most->first) : std::nullopt;
 }
 
 bool shows_imagery_and_roads(const MapInfo& info) {
-  const auto has = [&](bool imagery) {
-    return std::ranges::any_of(info.sources, [&](const SourceStatus& source) {
-      return source.complete && (source.record.kind == "imagery") == imagery;
-    });
+  const auto has = [&](SourceContent content) {
+    return std::ranges::any_of(
+        info.sources, [&](const SourceStatus& source) { return source.complete && source.record.content == content; });
   };
-  return has(true) && has(false);
+  return has(SourceContent::kImagery) && has(SourceContent::kRoads);
 }
 
 }  // namespace roadfix

@@ -38,7 +38,7 @@ struct MapSettings {
 /// An ingested source and where it came from. `name` is its key: ingesting the same name again replaces it.
 struct SourceRecord {
   std::string name;
-  std::string kind;           ///< "imagery" or "roads"
+  SourceContent content = SourceContent::kImagery;
   std::string location = {};  ///< path or connection string as given
   std::string fingerprint;  ///< changes when the content or any setting that changes the cells does; guards resumption
   std::string method = {};  ///< detector or drawing rules with all parameters
@@ -120,8 +120,8 @@ Provenance provenance_of(const MapInfo& info);
 std::string credits_of(const MapInfo& info);
 
 /// Of the complete sources: the detector that read the most tiles of imagery, as RoadDetector::describe() writes it;
-/// empty where road data has more tiles than imagery.
-std::string imagery_reader_of(const MapInfo& info);
+/// nullopt where road data has more tiles than imagery.
+std::optional<std::string> imagery_reader_of(const MapInfo& info);
 
 /// Whether complete sources are imagery and others road data.
 bool shows_imagery_and_roads(const MapInfo& info);

@@ -49,8 +49,10 @@ Connection open_with(const std::filesystem::path& path, const MapSettings& setti
 /// An update of roadfix brings another detector, or takes a file for what it was not before: the same command is
 /// refused then, and should say why.
 std::string what_roadfix_changed(const SourceTable::Entry& before, const SourceRecord& now) {
-  if (before.kind != now.kind) return fmt::format(" (as {}; now it is {})", before.kind, now.kind);
-  if (now.kind != "imagery" || before.method == now.method) return "";
+  if (before.content != now.content) {
+    return fmt::format(" (as {}; now it is {})", to_string(before.content), to_string(now.content));
+  }
+  if (now.content != SourceContent::kImagery || before.method == now.method) return "";
   return fmt::format(" (made by {}; now it is {})", before.method, now.method);
 }
 

@@ -9,16 +9,29 @@
 
 namespace roadfix {
 
+using sqlite::Connection;
 using sqlite::Statement;
 
-SourceTable::SourceTable(sqlite::Connection& map, int finest_zoom) : map_(map), zoom_(finest_zoom) {}
+namespace {
+
+SourceContent content_of(const Connection& map, const std::string& kind) {
+  if (const auto content = value_of(kSourceContents, kind)) return *content;
+  throw CorruptData("map-corrupt",
+                    fmt::format("{}: roadfix_sources has a source of the kind '{}', which no map can have. Restore the "
+                                "map from a copy",
+                                map.path().string(), kind));
+}
+
+}  // namespace
+
+SourceTable::SourceTable(Connection& map, int finest_zoom) : map_(map), zoom_(finest_zoom) {}
 
 std::optional<SourceTable::Entry> SourceTable::find(const std::string& name, bool in_force) {
   Statement select(map_,
                    "SELECT id, fingerprint, kind, method, registration_sigma_m FROM roadfix_sources WHERE name = ?1 "
                    "AND in_force = ?2");
   if (!select.with(name, in_force).step()) return std::nullopt;
-  return Entry{select.integer(0), select.text(1), select.text(2), select.text(3), select.real(4)};
+  return Entry{select.integer(0), select.text(1), content_of(map_, select.text(2)), select.text(3), select.real(4)};
 }
 
 std::int64_t SourceTable::insert(const SourceRecord& record) {
@@ -35,7 +48,7 @@ void SourceTable::set_provenance(std::int64_t id, const SourceRecord& r) {
   Statement(map_,
             "UPDATE roadfix_sources SET kind = ?2, location = ?3, date = ?4, licence = ?5, attribution = ?6, "
             "method = ?7, registration_sigma_m = ?8 WHERE id = ?1")
-      .with(id, r.kind, r.location, p.date, p.licence, p.attribution, r.method, p.registration_sigma_m)
+      .with(id, to_string(r.content), r.location, p.date, p.licence, p.attribution, r.method, p.registration_sigma_m)
       .run();
 }
 
@@ -50,7 +63,7 @@ std::vector<SourceStatus> SourceTable::all() {
   std::vector<SourceStatus> sources;
   while (select.step()) {
     SourceStatus status{.record = {.name = select.text(0),
-                                   .kind = select.text(1),
+                                   .content = content_of(map_, select.text(1)),
                                    .location = select.text(2),
                                    .fingerprint = select.text(3),
                                    .method = select.text(4),

@@ -21,7 +21,7 @@ class SourceTable {
   struct Entry {
     std::int64_t id = 0;
     std::string fingerprint;
-    std::string kind;
+    SourceContent content = SourceContent::kImagery;
     std::string method;
     double registration_sigma_m = 0.0;
   };

@@ -40,7 +40,7 @@ class MakeDetector : public ::testing::Test {
 
   static std::string refusal(const DetectorChoice& choice) {
     try {
-      make_detector(choice, ComparedWith::kImagery);
+      make_detector(choice, SourceContent::kImagery);
     } catch (const InvalidInput& error) {
       return error.code();
     }
@@ -51,19 +51,19 @@ class MakeDetector : public ::testing::Test {
 };
 
 TEST_F(MakeDetector, TakesTheNamedModelAndItsOrientations) {
-  const std::string description = make_detector({"neural", model(), 4, {}}, ComparedWith::kImagery)->describe();
+  const std::string description = make_detector({"neural", model(), 4, {}}, SourceContent::kImagery)->describe();
   EXPECT_NE(description.find("neural tiny"), std::string::npos);
   EXPECT_NE(description.find("orientations=4"), std::string::npos);
 }
 
 TEST_F(MakeDetector, AutoIsNeuralWhereAModelIsNamed) {
-  EXPECT_NE(make_detector({"auto", model(), 1, {}}, ComparedWith::kRoads)->describe().find("neural tiny"),
+  EXPECT_NE(make_detector({"auto", model(), 1, {}}, SourceContent::kRoads)->describe().find("neural tiny"),
             std::string::npos);
 }
 
 TEST_F(MakeDetector, TheEnvironmentNamesTheDefaultModelOfBoth) {
   setenv("ROADFIX_MODEL", model().c_str(), 1);
-  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+  for (const SourceContent compared : {SourceContent::kImagery, SourceContent::kRoads}) {
     EXPECT_EQ(default_model(compared), model());
     EXPECT_NE(make_detector({}, compared)->describe().find("neural tiny"), std::string::npos);
   }
@@ -80,11 +80,11 @@ TEST_F(MakeDetector, TheFirstModelThatIsThereIsTaken) {
 }
 
 TEST_F(MakeDetector, AShippedNetworkInPlaceOfTheOtherOneIsTold) {
-  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", ComparedWith::kImagery), "roadnet-imagery.onnx");
-  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", ComparedWith::kRoads), "roadnet.onnx");
-  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", ComparedWith::kRoads), std::nullopt);
-  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", ComparedWith::kImagery), std::nullopt);
-  EXPECT_EQ(stood_in_for(model(), ComparedWith::kRoads), std::nullopt) << "somebody's own";
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", SourceContent::kImagery), "roadnet-imagery.onnx");
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", SourceContent::kRoads), "roadnet.onnx");
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet.onnx", SourceContent::kRoads), std::nullopt);
+  EXPECT_EQ(stood_in_for(folder_ / "roadnet-imagery.onnx", SourceContent::kImagery), std::nullopt);
+  EXPECT_EQ(stood_in_for(model(), SourceContent::kRoads), std::nullopt) << "somebody's own";
 }
 
 TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
@@ -101,7 +101,7 @@ TEST_F(MakeDetector, AModelThatMayNotBeReadIsNotPassedOver) {
 }
 
 TEST_F(MakeDetector, TheTreeNeedsNoModelAndRefusesOne) {
-  EXPECT_EQ(make_detector({"tree", {}, {}, {}}, ComparedWith::kImagery)->describe().substr(0, 5), "tree ");
+  EXPECT_EQ(make_detector({"tree", {}, {}, {}}, SourceContent::kImagery)->describe().substr(0, 5), "tree ");
   EXPECT_EQ(refusal({"tree", model(), {}, {}}), "model-without-network");
 }
 
@@ -117,7 +117,7 @@ TEST_F(MakeDetector, WhatIsSaidOfTheOtherDetectorIsRefused) {
 TEST_F(MakeDetector, ReadsTheImageryOfMapsInFourOrientationsUnlessToldAndFramesInOne) {
   EXPECT_THAT(make_map_detector({"neural", model(), {}, {}})->describe(), ::testing::HasSubstr("orientations=4"));
   EXPECT_THAT(make_map_detector({"neural", model(), 1, {}})->describe(), ::testing::HasSubstr("orientations=1"));
-  EXPECT_THAT(make_detector({"neural", model(), {}, {}}, ComparedWith::kImagery)->describe(),
+  EXPECT_THAT(make_detector({"neural", model(), {}, {}}, SourceContent::kImagery)->describe(),
               ::testing::HasSubstr("orientations=1"));
   EXPECT_EQ(make_map_detector({"tree", {}, {}, {}})->describe().substr(0, 5), "tree ");
 }
@@ -128,7 +128,7 @@ TEST_F(MakeDetector, EitherShippedNetworkFitsItsDescription) {
   DetectorChoice choice;
   choice.name = "neural";
   std::set<std::string> descriptions;
-  for (const ComparedWith compared : {ComparedWith::kImagery, ComparedWith::kRoads}) {
+  for (const SourceContent compared : {SourceContent::kImagery, SourceContent::kRoads}) {
     if (!default_model(compared)) GTEST_SKIP() << "models/roadnet*.onnx are not there";
     const auto detector = make_detector(choice, compared);
     EXPECT_NE(detector->describe().find("neural roadnet"), std::string::npos);

@@ -11,7 +11,10 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 SourceRecord record(const std::string& fingerprint) {
-  return {.name = "roads", .kind = "roads", .fingerprint = fingerprint, .provenance = {.registration_sigma_m = 2.5}};
+  return {.name = "roads",
+          .content = SourceContent::kRoads,
+          .fingerprint = fingerprint,
+          .provenance = {.registration_sigma_m = 2.5}};
 }
 
 SourceRecord credited(const std::string& fingerprint) {

@@ -59,7 +59,7 @@ class NoiseSource final : public CellSource {
 SourceRecord record() {
   SourceRecord result;
   result.name = "noise";
-  result.kind = "imagery";
+  result.content = SourceContent::kImagery;
   result.fingerprint = "1";
   return result;
 }

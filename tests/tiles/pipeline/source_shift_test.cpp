@@ -212,7 +212,7 @@ class MeasuredShifts : public ::testing::Test {
 
   void put(const std::string& name, int east, double sigma_m = 2.5) {
     const SourceRecord record{.name = name,
-                              .kind = "roads",
+                              .content = SourceContent::kRoads,
                               .fingerprint = name + std::to_string(east),
                               .provenance = {.registration_sigma_m = sigma_m}};
     put(record, {{847, -8165}, {848, -8165}, {847, -8164}, {848, -8164}}, town, east);
@@ -294,8 +294,11 @@ TEST_F(MeasuredShifts, OfAWrongSourceItsCopyAndARightOneAllThreeCountAsUncertain
 TEST_F(MeasuredShifts, OfACopyOfAPartOfTheGroundCountTheSame) {
   const std::vector<TileIndex> west{{847, -8165}, {847, -8164}};
   put("wrong", 10);
-  put({.name = "part", .kind = "roads", .fingerprint = "part", .provenance = {.registration_sigma_m = 2.5}}, west, town,
-      10);
+  put({.name = "part",
+       .content = SourceContent::kRoads,
+       .fingerprint = "part",
+       .provenance = {.registration_sigma_m = 2.5}},
+      west, town, 10);
   put("right", 0);
   EXPECT_EQ(measure_shifts(writer, {"wrong", "part", "right"}).beside.size(), 3U);
 }
@@ -352,7 +355,7 @@ TEST_F(MeasuredShifts, OfThoseBesideAReplacedSourceAreMeasuredAnewThoughFusingIt
   put("a", 0);
   put("b", 10);
   ASSERT_EQ(measure_shifts(writer, {"a", "b"}).beside.size(), 2U);
-  const SourceRecord elsewhere{.name = "b", .kind = "roads", .fingerprint = "elsewhere"};
+  const SourceRecord elsewhere{.name = "b", .content = SourceContent::kRoads, .fingerprint = "elsewhere"};
   const BlankSource source(grown(tile_geometry({900, -8165}, kCellM).box(), -1.0));
   std::stop_source stop;
   const auto stop_at_once = [&](std::int64_t, std::int64_t) { stop.request_stop(); };
@@ -380,7 +383,7 @@ TEST_F(MeasuredShifts, OfThoseBesideANewSourceAreMeasuredAnew) {
   put("a", 0);
   ASSERT_TRUE(measure_shifts(writer, {"a"}).beside.empty());
   const TileIndex tile{847, -8165};
-  const SourceRecord record{.name = "b", .kind = "roads", .fingerprint = "b"};
+  const SourceRecord record{.name = "b", .content = SourceContent::kRoads, .fingerprint = "b"};
   const auto shifts = ingest(TileSource(tile, part_of(town, tile, 10)), record, writer, {}).shifts.beside;
   ASSERT_EQ(shifts.size(), 2U);
   EXPECT_EQ(shifts.at("b").shift.east_m, -20.0);

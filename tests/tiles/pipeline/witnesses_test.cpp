@@ -106,7 +106,7 @@ TEST(Copy, IsNoneOfAnotherTownNorOfWhatShowsNoRoads) {
 class SeveralSources : public ::testing::Test {
  protected:
   void put(const std::string& name, const CellArray& cells) {
-    const SourceRecord record{.name = name, .kind = "roads", .fingerprint = name};
+    const SourceRecord record{.name = name, .content = SourceContent::kRoads, .fingerprint = name};
     const std::vector<TileIndex> blocks{{847, -8165}};
     writer.begin_source(record, blocks, false);
     testing::put_block(writer, name, blocks[0], cells);

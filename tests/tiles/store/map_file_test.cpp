@@ -106,7 +106,7 @@ TEST_F(MapFile, DamagedSettingsAreFound) {
        {"UPDATE roadfix_meta SET value = '3.5' WHERE key = 'cell_m'",
         "UPDATE roadfix_meta SET value = '4326' WHERE key = 'epsg'", "DELETE FROM roadfix_meta WHERE key = 'version'",
         "UPDATE roadfix_meta SET value = 'x' WHERE key = 'schema_version'", "UPDATE gpkg_contents SET max_x = 1e300",
-        "UPDATE gpkg_contents SET max_y = min_y - 1"}) {
+        "UPDATE gpkg_contents SET max_y = min_y - 1", "UPDATE roadfix_sources SET kind = 'road'"}) {
     const auto whole = folder / "whole.gpkg";
     fs::copy_file(path, whole, fs::copy_options::overwrite_existing);
     execute(sql);

@@ -49,7 +49,7 @@ struct TestSource {
   std::vector<TileIndex> blocks;
   SourceRecord record() const {
     return {.name = name,
-            .kind = "imagery",
+            .content = SourceContent::kImagery,
             .location = name + ".tif",
             .fingerprint = name + std::to_string(seed),
             .method = "tree",

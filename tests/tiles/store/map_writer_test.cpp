@@ -173,8 +173,8 @@ TEST(MapWriter, SaysThatTheSameSourceWasMadeByAnotherDetector) {
   EXPECT_THAT(message(), ::testing::HasSubstr("(made by tree; now it is neural 2)"));
   updated.method = source.record().method;
   EXPECT_THAT(message(), ::testing::Not(::testing::HasSubstr("made by")));
-  updated.kind = source.record().kind == "roads" ? "imagery" : "roads";
-  EXPECT_THAT(message(), ::testing::HasSubstr("(as " + source.record().kind + "; now it is " + updated.kind + ")"));
+  updated.content = SourceContent::kRoads;
+  EXPECT_THAT(message(), ::testing::HasSubstr("(as imagery; now it is roads)"));
 }
 
 TEST(MapWriter, AReplacedSourceStaysInForceUntilTheNewOneIsComplete) {

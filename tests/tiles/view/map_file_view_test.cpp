@@ -43,7 +43,7 @@ TEST(MapFileView, ASourceCountsForTheAccuracyOfTheGroundAroundItOnly) {
   {
     MapWriter writer(path, {UtmZone::from_epsg(32634).value(), 2.0});
     const SourceRecord coarse{.name = "coarse",
-                              .kind = "roads",
+                              .content = SourceContent::kRoads,
                               .location = "coarse.geojson",
                               .fingerprint = "coarse",
                               .method = "drawn",
@@ -88,7 +88,7 @@ MapView view_of_sources(std::initializer_list<std::tuple<const char*, const char
   int row = -8165;
   for (const auto& [kind, method, tiles] : sources) {
     SourceRecord record = testing::TestSource{std::to_string(row), 1, {}}.record();
-    record.kind = kind;
+    record.content = value_of(kSourceContents, kind).value();
     record.method = method;
     std::vector<TileIndex> blocks;
     for (int col = 0; col < tiles; ++col) blocks.push_back({847 + col, row});
@@ -101,7 +101,7 @@ MapView view_of_sources(std::initializer_list<std::tuple<const char*, const char
   return view_of_file(folder / "m.gpkg");
 }
 
-std::string imagery_reader(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
+std::optional<std::string> imagery_reader(std::initializer_list<std::tuple<const char*, const char*, int>> sources) {
   return view_of_sources(sources).imagery_reader;
 }
 
@@ -121,8 +121,9 @@ TEST(MapFileView, TellsWhetherImageryAndRoadDataAreInIt) {
 }
 
 TEST(MapFileView, NamesNoDetectorWhereMoreTilesShowRoadDataThanImagery) {
-  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}}), "");
-  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}, {"imagery", "neural a; 1", 2}}), "");
+  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}}), std::nullopt);
+  EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 3}, {"imagery", "neural a; 1", 2}}),
+            std::nullopt);
   EXPECT_EQ(imagery_reader({{"roads", "drawn roads 0.9 elsewhere 0.1", 2}, {"imagery", "neural a; 1", 2}}), "neural a");
 }
 

@@ -56,7 +56,7 @@ struct Share {
   int right = 0;
 };
 
-bool is_on_map(const SetResult& result) { return result.method == "roads" && !result.elsewhere; }
+bool is_on_map(const SetResult& result) { return result.method == MethodName::kRoads && !result.elsewhere; }
 
 void add(const SetResult& result, Share& share) {
   for (const Outcome& outcome : result.outcomes) {

@@ -22,9 +22,13 @@ const JsonFile kFile{"bench manifest", "manifest-field", "manifest-json", ""};
 constexpr double kMaxFootprintM = 10'000.0;
 constexpr double kMaxCount = 1e6;
 
+constexpr std::array<Word<ManifestSource::As>, 3> kSources{{{"imagery", ManifestSource::As::kImagery},
+                                                            {"roads", ManifestSource::As::kRoads},
+                                                            {"invented", ManifestSource::As::kInvented}}};
+
 ManifestSource parse_source(const JsonField& field, const std::filesystem::path& directory) {
-  const std::string as = field.at("as").one_of({"imagery", "roads", "invented"});
-  if (as != "invented") {
+  const ManifestSource::As as = field.at("as").one_of(kSources);
+  if (as != ManifestSource::As::kInvented) {
     field.allow_only({"path", "as"});
     return {directory / field.at("path").text(), as};
   }
@@ -46,7 +50,7 @@ ManifestMap parse_map(const JsonField& field, const std::filesystem::path& direc
   return map;
 }
 
-bool has_method(const Manifest& manifest, const std::string& name) {
+bool has_method(const Manifest& manifest, MethodName name) {
   return std::ranges::find(manifest.methods, name) != manifest.methods.end();
 }
 
@@ -178,12 +182,12 @@ Manifest parse_manifest(std::string_view text, const std::filesystem::path& dire
     manifest.queries.push_back(parse_query_set(set, manifest, directory));
   if (root.has("methods")) {
     for (const JsonField& method : root.at("methods").elements()) {
-      std::string name = method.one_of({"roads", "sift", "orb"});
-      if (has_method(manifest, name)) method.refuse(fmt::format("is '{}', as one before", name));
-      manifest.methods.push_back(std::move(name));
+      const MethodName name = method.one_of(kMethodNames);
+      if (has_method(manifest, name)) method.refuse(fmt::format("is '{}', as one before", to_string(name)));
+      manifest.methods.push_back(name);
     }
   } else {
-    manifest.methods = {"roads"};
+    manifest.methods = {MethodName::kRoads};
   }
   if (manifest.queries.empty()) root.refuse("has no queries");
   if (manifest.methods.empty()) root.refuse("has no methods");
@@ -195,17 +199,20 @@ Manifest read_manifest(const std::filesystem::path& file) {
 }
 
 Manifest with_methods(Manifest manifest, std::string_view names) {
-  std::vector<std::string> wanted;
+  std::vector<MethodName> wanted;
   std::istringstream words{std::string(names)};
   // Of an empty list one name is read, which no method has.
   for (std::string name; std::getline(words, name, ',') || wanted.empty();) {
-    wanted.emplace_back(trimmed(name));
-    if (has_method(manifest, wanted.back())) continue;
-    throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}",
-                                                     wanted.back(), fmt::join(manifest.methods, ", ")));
+    const auto method = value_of(kMethodNames, trimmed(name));
+    if (!method || !has_method(manifest, *method)) {
+      std::vector<std::string_view> known;
+      for (const MethodName one : manifest.methods) known.push_back(to_string(one));
+      throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}",
+                                                       trimmed(name), fmt::join(known, ", ")));
+    }
+    wanted.push_back(*method);
   }
-  std::erase_if(manifest.methods,
-                [&](const std::string& method) { return std::ranges::find(wanted, method) == wanted.end(); });
+  std::erase_if(manifest.methods, [&](MethodName method) { return std::ranges::find(wanted, method) == wanted.end(); });
   return manifest;
 }
 

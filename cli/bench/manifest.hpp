@@ -1,6 +1,7 @@
 // What `roadfix bench` is asked to do: maps to build, queries to draw, methods to compare (docs/bench.md).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -11,14 +12,16 @@
 #include "core/detect/orthoimage.hpp"
 #include "core/locate/simulate.hpp"
 #include "core/units/angle.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix::bench {
 
 struct ManifestSource {
+  enum class As { kImagery, kRoads, kInvented };
   std::filesystem::path path;  ///< empty for an invented town
-  std::string as;              ///< "imagery", "roads" or "invented"
-  std::uint64_t seed = 1;      ///< of an invented town
-  double side_m = 0.0;         ///< of an invented town, which is square
+  As as = As::kImagery;
+  std::uint64_t seed = 1;  ///< of an invented town
+  double side_m = 0.0;     ///< of an invented town, which is square
 };
 
 struct ManifestMap {
@@ -59,10 +62,15 @@ struct QuerySet {
   double prior_scale_range = 0.0;            ///< how well the size of the ground is known: SearchOptions::scale_range
 };
 
+enum class MethodName { kRoads, kSift, kOrb };
+inline constexpr std::array<Word<MethodName>, 3> kMethodNames{
+    {{"roads", MethodName::kRoads}, {"sift", MethodName::kSift}, {"orb", MethodName::kOrb}}};
+constexpr std::string_view to_string(MethodName name) { return word_of(kMethodNames, name); }
+
 struct Manifest {
   std::vector<ManifestMap> maps;
   std::vector<QuerySet> queries;
-  std::vector<std::string> methods;  ///< of "roads", "sift", "orb"
+  std::vector<MethodName> methods;
 };
 
 /// Relative paths are taken from `directory`. Throws InvalidInput that names the field ("queries[2].count").

@@ -40,11 +40,12 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
 
 SourceRequest request_of(const ManifestSource& source, const std::filesystem::path& cache) {
   SourceRequest request;
-  if (source.as == "invented") {
+  if (source.as == ManifestSource::As::kInvented) {
     request.files = find_source(invented_roads(source, cache).string(), SourceMeaning::kRoads);
     return request;
   }
-  const SourceMeaning meaning = source.as == "imagery" ? SourceMeaning::kImagery : SourceMeaning::kRoads;
+  const SourceMeaning meaning =
+      source.as == ManifestSource::As::kImagery ? SourceMeaning::kImagery : SourceMeaning::kRoads;
   request.files = find_source(source.path.string(), meaning);
   return request;
 }
@@ -103,7 +104,7 @@ MapView build_map(const ManifestMap& map, const MapBuilding& building) {
 std::vector<Orthoimage> read_imagery(const ManifestMap& map, const UtmZone& zone) {
   std::vector<Orthoimage> imagery;
   for (const ManifestSource& source : map.sources) {
-    if (source.as != "imagery") continue;
+    if (source.as != ManifestSource::As::kImagery) continue;
     for (const std::string& path : request_of(source, {}).files.paths) imagery.push_back(read_orthoimage(path, zone));
   }
   return imagery;

@@ -144,7 +144,7 @@ json to_json(const SetResult& result) {
   const Summary s = summary_of(result.outcomes);
   json queries = json::array();
   for (const Outcome& outcome : result.outcomes) queries.push_back(outcome_json(outcome));
-  return {{"method", result.method},
+  return {{"method", to_string(result.method)},
           {"map", result.map},
           {"query_set", result.query_set},
           {"n", s.n},
@@ -164,7 +164,8 @@ json to_json(const SetResult& result) {
 std::vector<Outcome> road_outcomes(const std::vector<SetResult>& results) {
   std::vector<Outcome> outcomes;
   for (const SetResult& result : results) {
-    if (result.method == "roads") outcomes.insert(outcomes.end(), result.outcomes.begin(), result.outcomes.end());
+    if (result.method == MethodName::kRoads)
+      outcomes.insert(outcomes.end(), result.outcomes.begin(), result.outcomes.end());
   }
   return outcomes;
 }
@@ -184,9 +185,9 @@ std::string to_table(const std::vector<SetResult>& results) {
     const Summary s = summary_of(result.outcomes);
     table += fmt::format(
         "{:<8}{:<{}}  {:<{}}{:>5}{:>9}{:>7.2f}{:>7.2f}{:>7.2f}{:>7.2f}{:>7}{:>9}{:>9}{:>9.0f}{:>9.0f}  {}\n",
-        result.method, result.map, map_width, result.query_set, set_width, s.n, s.answered, s.recall_5, s.recall_10,
-        s.recall_25, s.recall_50, s.false_fixes, cell(s.median_error_m, 1), cell(s.median_heading_error_deg, 2),
-        s.time_p50_ms, s.time_p95_ms, at_truth(s));
+        to_string(result.method), result.map, map_width, result.query_set, set_width, s.n, s.answered, s.recall_5,
+        s.recall_10, s.recall_25, s.recall_50, s.false_fixes, cell(s.median_error_m, 1),
+        cell(s.median_heading_error_deg, 2), s.time_p50_ms, s.time_p95_ms, at_truth(s));
   }
   return table;
 }

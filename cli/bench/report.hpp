@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "cli/bench/manifest.hpp"
 #include "cli/bench/query.hpp"
 #include "core/locate/simulate.hpp"
 
@@ -47,7 +48,7 @@ struct Summary {
 Summary summary_of(const std::vector<Outcome>& outcomes);
 
 struct SetResult {
-  std::string method;
+  MethodName method = MethodName::kRoads;
   std::string map;
   std::string query_set;  ///< as describe() names it
   std::vector<Outcome> outcomes;
@@ -58,7 +59,7 @@ struct SetResult {
 
 /// With the honesty of the set (honesty.hpp).
 nlohmann::json to_json(const SetResult& result);
-/// All outcomes of the method "roads".
+/// All outcomes of MethodName::kRoads.
 std::vector<Outcome> road_outcomes(const std::vector<SetResult>& results);
 
 std::string to_table(const std::vector<SetResult>& results);

@@ -25,18 +25,19 @@ void stop_if_asked(const BenchOptions& options) {
 /// What keypoints are matched with, and what pictures show.
 std::vector<Orthoimage> imagery_for(const Manifest& manifest, const ManifestMap& map, const UtmZone& zone,
                                     const BenchOptions& options) {
-  const bool keypoints = std::ranges::any_of(manifest.methods, [](const auto& name) { return name != "roads"; });
+  const bool keypoints =
+      std::ranges::any_of(manifest.methods, [](MethodName name) { return name != MethodName::kRoads; });
   if (!keypoints && options.pictures.empty()) return {};
   return read_imagery(map, zone);
 }
 
-std::unique_ptr<Method> make_method(const std::string& name, const std::vector<Orthoimage>& imagery, const MapView& map,
+std::unique_ptr<Method> make_method(MethodName name, const std::vector<Orthoimage>& imagery, const MapView& map,
                                     const BenchOptions& options) {
-  if (name == "roads")
+  if (name == MethodName::kRoads)
     return make_roads_method(map, options.detectors->for_map(map.imagery_reader),
                              {options.maps.cell_m, options.seed, options.fix});
   if (imagery.empty()) return nullptr;  // a map from vectors has no keypoints to compare with
-  return make_feature_method(name == "sift" ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
+  return make_feature_method(name == MethodName::kSift ? FeatureKind::kSift : FeatureKind::kOrb, imagery, map.zone);
 }
 
 /// Where pictures are drawn to, and what of the map they show.
@@ -90,9 +91,9 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
   }
   for (const ManifestMap& manifest_map : manifest.maps) {
     const MapView& map = maps.at(manifest_map.name);
-    std::map<std::string, std::unique_ptr<Method>> methods;
+    std::map<MethodName, std::unique_ptr<Method>> methods;
     const auto imagery = imagery_for(manifest, manifest_map, map.zone, options);
-    for (const std::string& name : manifest.methods) methods[name] = make_method(name, imagery, map, options);
+    for (const MethodName name : manifest.methods) methods[name] = make_method(name, imagery, map, options);
     for (std::size_t i = 0; i < manifest.queries.size(); ++i) {
       const QuerySet& set = manifest.queries[i];
       if (set.map != manifest_map.name) continue;
@@ -106,11 +107,11 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
           make_queries(set, map, maps.at(set.from), *detector, {options.seed, i, options.limit});
       if (!why_none.empty()) options.left_out(why_none);  // the other sets are worth asking all the same
       if (queries.empty()) continue;
-      for (const std::string& name : manifest.methods) {
+      for (const MethodName name : manifest.methods) {
         if (!methods[name]) continue;
-        const std::string task = fmt::format("{} {}", name, describe(set));
+        const std::string task = fmt::format("{} {}", to_string(name), describe(set));
         Drawing drawing{{}, imagery};
-        if (!options.pictures.empty()) drawing.folder = options.pictures / fmt::format("{}-{}", i + 1, name);
+        if (!options.pictures.empty()) drawing.folder = options.pictures / fmt::format("{}-{}", i + 1, to_string(name));
         results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, drawing, options),
                            std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere,
                            common_quality(set)});

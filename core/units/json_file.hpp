@@ -1,11 +1,15 @@
 // JSON that a person wrote, read field by field: whatever is wrong is named with its place and what to do.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/units/words.hpp"
 
 namespace roadfix {
 
@@ -40,6 +44,11 @@ class JsonField {
   double number(double low, double high) const;
   std::int64_t whole_number(double low, double high) const;
   std::string one_of(const std::vector<std::string_view>& words) const;
+  template <typename E, std::size_t N>
+  E one_of(const std::array<Word<E>, N>& words) const {
+    const auto names = words_in(words);
+    return value_of(words, one_of(std::vector<std::string_view>(names.begin(), names.end()))).value();
+  }
 
  private:
   JsonField(const nlohmann::json& value, const JsonFile& file, std::string place);

@@ -17,9 +17,9 @@ TEST(Curves, PutAPointWhereProbabilityAndTruthMeet) {
 }
 
 TEST(Curves, LeaveOutQueriesElsewhereAndRealFrames) {
-  SetResult on_map{"roads", "town", "simulated", {Outcome{}}, 400.0, false};
-  SetResult elsewhere{"roads", "town", "simulated elsewhere", {Outcome{}}, 300.0, true};
-  SetResult frames{"roads", "town", "frames.csv", {Outcome{}}, 0.0, false};
+  SetResult on_map{MethodName::kRoads, "town", "simulated", {Outcome{}}, 400.0, false};
+  SetResult elsewhere{MethodName::kRoads, "town", "simulated elsewhere", {Outcome{}}, 300.0, true};
+  SetResult frames{MethodName::kRoads, "town", "frames.csv", {Outcome{}}, 0.0, false};
   const std::vector<SetResult> results{on_map, elsewhere, frames};
   EXPECT_THAT(answered_svg(results), HasSubstr("cx=\"322.7\""));  // 400 of 480 m
   EXPECT_THAT(answered_svg(results), Not(HasSubstr("cx=\"256.0\"")));
@@ -28,7 +28,7 @@ TEST(Curves, LeaveOutQueriesElsewhereAndRealFrames) {
 
 TEST(Curves, OfAPropertyTakeTheSetsThatDifferInNothingElse) {
   const auto set_of = [](const FeatureQuality& quality) {
-    SetResult set{"roads", "town", "simulated", {Outcome{}}, 400.0, false, quality};
+    SetResult set{MethodName::kRoads, "town", "simulated", {Outcome{}}, 400.0, false, quality};
     set.outcomes[0].error_m = 3.0;
     return set;
   };

@@ -36,7 +36,7 @@ TEST(Manifest, ReadsAllThreeKindsOfQueries) {
 TEST(Manifest, WithoutMethodsAsksForRoads) {
   const std::string queries = R"("queries": [{"map": "town", "frames": "frames.csv"}])";
   const std::string maps = R"("maps": [{"name": "town", "sources": [{"path": "pre.tif", "as": "imagery"}]}])";
-  EXPECT_THAT(parse_manifest("{" + maps + "," + queries + "}", ".").methods, ElementsAre("roads"));
+  EXPECT_THAT(parse_manifest("{" + maps + "," + queries + "}", ".").methods, ElementsAre(MethodName::kRoads));
   EXPECT_THAT([&] { parse_manifest("{" + maps + "," + queries + R"(, "methods": []})", "."); },
               ThrowsMessage<InvalidInput>(HasSubstr("no methods")));
 }
@@ -49,7 +49,7 @@ TEST(Manifest, ReadsTheQualityOfSimulatedQueriesAndWhereTheyComeFrom) {
                  "noise": {"erase": [0.1, 0.5], "tilt_deg": 2}}],
     "methods": ["roads"]})",
                                            ".");
-  EXPECT_EQ(manifest.maps[1].sources[0].as, "invented");
+  EXPECT_EQ(manifest.maps[1].sources[0].as, ManifestSource::As::kInvented);
   EXPECT_EQ(manifest.maps[1].sources[0].seed, 7u);
   EXPECT_EQ(manifest.maps[1].sources[0].side_m, 2000.0);
   const QuerySet& set = manifest.queries.at(0);
@@ -131,8 +131,8 @@ TEST(Manifest, GivesNoNameTwice) {
 
 TEST(Manifest, IsAskedForSomeOfItsMethodsButForNoOther) {
   const Manifest manifest = parse_manifest(kManifest, ".");
-  EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre("roads", "sift"));
-  EXPECT_THAT(with_methods(manifest, "sift").methods, ElementsAre("sift"));
+  EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre(MethodName::kRoads, MethodName::kSift));
+  EXPECT_THAT(with_methods(manifest, "sift").methods, ElementsAre(MethodName::kSift));
   for (const char* names : {"sift,surf", "orb", "roads,,sift", ""}) {
     EXPECT_THAT([&] { with_methods(manifest, names); }, ThrowsMessage<InvalidInput>(HasSubstr("no method '"))) << names;
   }

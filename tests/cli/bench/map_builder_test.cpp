@@ -12,6 +12,7 @@ namespace roadfix::bench {
 namespace {
 
 using MapBuilder = BenchRun;
+using As = ManifestSource::As;
 
 TEST_F(MapBuilder, KeepsMapsOfTheSameNameApart) {
   const auto other = folder / "other";
@@ -21,17 +22,17 @@ TEST_F(MapBuilder, KeepsMapsOfTheSameNameApart) {
   }
   cv::imwrite(other / "town.png", cv::imread(folder / "town.png") / 2);
   const MapBuilding& building = options.maps;
-  const MapView here = build_map({"town", {{folder / "town.png", "imagery"}}}, building);
-  const MapView there = build_map({"town", {{other / "town.png", "imagery"}}}, building);
+  const MapView here = build_map({"town", {{folder / "town.png", As::kImagery}}}, building);
+  const MapView there = build_map({"town", {{other / "town.png", As::kImagery}}}, building);
   const MapView both =
-      build_map({"town", {{folder / "town.png", "imagery"}, {other / "town.png", "imagery"}}}, building);
+      build_map({"town", {{folder / "town.png", As::kImagery}, {other / "town.png", As::kImagery}}}, building);
   EXPECT_NE(here.version, there.version);
   EXPECT_NE(here.version, both.version);
-  EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", "imagery"}}}, building).version);
+  EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", As::kImagery}}}, building).version);
 }
 
 TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
-  const ManifestMap map{"town", {{{}, "invented", 3, 800.0}}};
+  const ManifestMap map{"town", {{{}, As::kInvented, 3, 800.0}}};
   MapBuilding building = options.maps;
   building.version = "1";
   const std::string version = build_map(map, building).version;
@@ -49,7 +50,7 @@ TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
 
 TEST_F(MapBuilder, MapsBothSidesOfTheEquator) {
   std::ofstream(folder / "town.pgw") << "1\n0\n0\n-1\n400000.5\n349.5\n";
-  const MapView map = build_map({"town", {{folder / "town.png", "imagery"}}}, options.maps);
+  const MapView map = build_map({"town", {{folder / "town.png", As::kImagery}}}, options.maps);
   EXPECT_FALSE(map.zone.northern());
   EXPECT_NEAR(map.extent.height_m(), 700.0, 4.0);
 }

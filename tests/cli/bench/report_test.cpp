@@ -43,14 +43,14 @@ TEST(Summary, TellsWhatOfTheTruePlaceWasSeenAgain) {
   const std::vector<Outcome> keypoints = {judged("a", {}, a, kZone), judged("b", {}, b, kZone)};
   EXPECT_EQ(summary_of(keypoints).mean_matches, 75.0);
   EXPECT_EQ(summary_of(keypoints).mean_right_matches, 1.5);
-  EXPECT_NE(to_table({{"sift", "m", "q", keypoints}}).find("1.5 of 75 matches right"), std::string::npos);
+  EXPECT_NE(to_table({{MethodName::kSift, "m", "q", keypoints}}).find("1.5 of 75 matches right"), std::string::npos);
 
   Answer roads;
   roads.rho_at_truth = 0.4;
   const std::vector<Outcome> outcomes = {judged("a", {}, roads, kZone), judged("b", {}, Answer{}, kZone)};
   EXPECT_EQ(summary_of(outcomes).median_rho_at_truth, 0.4);
   EXPECT_FALSE(summary_of(outcomes).mean_matches);
-  EXPECT_NE(to_table({{"roads", "m", "q", outcomes}}).find("rho 0.40"), std::string::npos);
+  EXPECT_NE(to_table({{MethodName::kRoads, "m", "q", outcomes}}).find("rho 0.40"), std::string::npos);
 }
 
 TEST(Summary, CountsNoTimeWhereNoPlaceWasLookedFor) {
@@ -62,7 +62,7 @@ TEST(Summary, CountsNoTimeWhereNoPlaceWasLookedFor) {
 
 TEST(Summary, OfNothingHasNoMedian) {
   EXPECT_FALSE(summary_of({}).median_error_m);
-  EXPECT_EQ(to_json({"roads", "m", "q", {}})["median_error_m"], nullptr);
+  EXPECT_EQ(to_json({MethodName::kRoads, "m", "q", {}})["median_error_m"], nullptr);
 }
 
 TEST(Report, GivesTheEllipseThatEachNeesFollowsFrom) {
@@ -75,18 +75,19 @@ TEST(Report, GivesTheEllipseThatEachNeesFollowsFrom) {
   answer.best = mode.pose;
   answer.mode = mode;
   const GeoPose truth{{37.76, 38.28009}, {}};  // about 8 m to the east
-  const auto query = to_json({"roads", "m", "q", {judged("a", truth, answer, kZone)}})["queries"][0];
+  const auto query = to_json({MethodName::kRoads, "m", "q", {judged("a", truth, answer, kZone)}})["queries"][0];
   EXPECT_EQ(query["ellipse"]["sigma_m"], (std::vector<double>{4.0, 2.0}));
   EXPECT_NEAR(query["ellipse"]["heading_deg"].get<double>(), 90.0, 1e-9);
   EXPECT_NEAR(query["ellipse"]["heading_sigma_deg"].get<double>(), 0.5, 1e-9);
   const double error_m = query["error_m"];
   EXPECT_NEAR(query["position_nees"].get<double>(), error_m * error_m / 16.0, 0.01);
-  EXPECT_EQ(to_json({"sift", "m", "q", {judged("a", truth, {}, kZone)}})["queries"][0]["ellipse"], nullptr);
+  EXPECT_EQ(to_json({MethodName::kSift, "m", "q", {judged("a", truth, {}, kZone)}})["queries"][0]["ellipse"], nullptr);
 }
 
 TEST(Table, KeepsItsColumnsApartForLongNames) {
-  const std::string table = to_table({{"roads", "liechtenstein-latest", "simulated 400x400 m, 60 % erased", {}},
-                                      {"sift", "town", "post.jpg 300x300 m", {}}});
+  const std::string table =
+      to_table({{MethodName::kRoads, "liechtenstein-latest", "simulated 400x400 m, 60 % erased", {}},
+                {MethodName::kSift, "town", "post.jpg 300x300 m", {}}});
   EXPECT_NE(table.find("liechtenstein-latest  simulated 400x400 m, 60 % erased    0"), std::string::npos) << table;
   EXPECT_NE(table.find("town                  post.jpg 300x300 m"), std::string::npos) << table;
 }

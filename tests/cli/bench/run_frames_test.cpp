@@ -112,9 +112,9 @@ TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
                                         << ",250,400,-5,8,-0.2 0.05 0 0\n";
   for (const SetResult& result : run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads", "sift")")) {
     const Outcome& outcome = result.outcomes.at(0);
-    EXPECT_LT(outcome.error_m.value(), 3.0) << result.method;
-    EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << result.method;
-    if (result.method != "roads") continue;
+    EXPECT_LT(outcome.error_m.value(), 3.0) << to_string(result.method);
+    EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << to_string(result.method);
+    if (result.method != MethodName::kRoads) continue;
     EXPECT_GE(outcome.answer.mode.value().ellipse.sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
         << "how well the attitude is known is part of the accuracy";
   }
@@ -126,8 +126,8 @@ TEST_F(BenchRunOfFrames, CountsAFrameBeyondTheMapAsNotFoundWhateverIsToldOfItsPl
     const auto results =
         run(std::string(R"({"map": "town", "frames": "frames.csv", "prior": )") + prior + "}", R"("roads", "sift")");
     for (const SetResult& result : results) {
-      EXPECT_EQ(summary_of(result.outcomes).n, 2) << result.method << prior;
-      EXPECT_EQ(summary_of(result.outcomes).recall_5, 0.5) << result.method << prior;
+      EXPECT_EQ(summary_of(result.outcomes).n, 2) << to_string(result.method) << prior;
+      EXPECT_EQ(summary_of(result.outcomes).recall_5, 0.5) << to_string(result.method) << prior;
     }
     if (results.at(0).query_set == "frames.csv") continue;
     EXPECT_EQ(results[0].outcomes.at(1).answer.reason, "prior-outside-map");

@@ -23,16 +23,16 @@ constexpr const char* kImageQueries = R"({"map": "town", "image": "town.png", "c
 TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
   for (const SetResult& result : run(kImageQueries, R"("roads", "sift", "orb")")) {
     const Summary s = summary_of(result.outcomes);
-    EXPECT_EQ(s.n, 3) << result.method;
-    EXPECT_EQ(s.recall_5, 1.0) << result.method;
-    EXPECT_EQ(s.false_fixes, 0) << result.method;
-    if (result.method == "roads") {
+    EXPECT_EQ(s.n, 3) << to_string(result.method);
+    EXPECT_EQ(s.recall_5, 1.0) << to_string(result.method);
+    EXPECT_EQ(s.false_fixes, 0) << to_string(result.method);
+    if (result.method == MethodName::kRoads) {
       EXPECT_GT(s.median_rho_at_truth.value_or(0.0), 0.8);
     } else {
-      EXPECT_GT(s.mean_right_matches.value_or(0.0), 0.8 * s.mean_matches.value_or(1e9)) << result.method;
+      EXPECT_GT(s.mean_right_matches.value_or(0.0), 0.8 * s.mean_matches.value_or(1e9)) << to_string(result.method);
     }
     for (const Outcome& outcome : result.outcomes) {
-      EXPECT_LT(outcome.heading_error_deg.value_or(360.0), 1.0) << result.method;
+      EXPECT_LT(outcome.heading_error_deg.value_or(360.0), 1.0) << to_string(result.method);
     }
   }
 }
@@ -125,7 +125,8 @@ TEST_F(BenchRun, GivesTheSameAnswersWithAnotherNumberOfJobsAndAFoundMap) {
   for (std::size_t method = 0; method < 2; ++method) {
     ASSERT_EQ(second[method].outcomes.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) {
-      EXPECT_EQ(first[method].outcomes[i].error_m, second[method].outcomes[i].error_m) << first[method].method;
+      EXPECT_EQ(first[method].outcomes[i].error_m, second[method].outcomes[i].error_m)
+          << to_string(first[method].method);
       EXPECT_EQ(first[method].outcomes[i].answer.probability, second[method].outcomes[i].answer.probability);
     }
   }

@@ -69,7 +69,7 @@ std::string row_of(const std::filesystem::path& picture, const Fix& fix) {
                         mode.ellipse.sigma_m[1], mode.ellipse.heading.degrees(), mode.heading_sigma.degrees());
   }
   return fmt::format("{},{},{},{:.4f},{},{},{}\n", csv_cell(picture.string()), api::to_string(fix.status), place,
-                     fix.probability, fix.reason, csv_cell(fix.map_name), fix.map_version);
+                     fix.probability, fix.reason, csv_cell(fix.map.name), fix.map.version);
 }
 
 }  // namespace roadfix::cli

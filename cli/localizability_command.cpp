@@ -29,21 +29,25 @@ double share(const MapSurvey& survey, std::int64_t places) {
 }
 
 void print_json(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
-  const nlohmann::json answer{{"map", api::map_json(map.name, map.version)}, {"made_by", api::made_by()},
-                              {"footprint_m", options.query.footprint_m},    {"places", found.places()},
-                              {"ground_km2", found.ground_m2 / 1e6},         {"distinct", share(found, found.distinct)},
-                              {"sparse", share(found, found.sparse)},        {"bare", share(found, found.bare)}};
+  const nlohmann::json answer{{"map", api::to_json(map.id)},
+                              {"made_by", api::made_by()},
+                              {"footprint_m", options.query.footprint_m},
+                              {"places", found.places()},
+                              {"ground_km2", found.ground_m2 / 1e6},
+                              {"distinct", share(found, found.distinct)},
+                              {"sparse", share(found, found.sparse)},
+                              {"bare", share(found, found.bare)}};
   fmt::print("{}\n", json_text(answer, 2));
 }
 
 void print_text(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
   constexpr std::int64_t kFewPlaces = 20;
   if (found.places() == 0) {
-    fmt::print("{}: nowhere is half of a footprint of {:g} m observed\n", map.name, options.query.footprint_m);
+    fmt::print("{}: nowhere is half of a footprint of {:g} m observed\n", map.id.name, options.query.footprint_m);
     return;
   }
   const double ground_km2 = found.ground_m2 / 1e6;
-  fmt::print("{}: {:.1f} km2 of ground, for frames that show {:g} m of it; asked at places: {}{}\n", map.name,
+  fmt::print("{}: {:.1f} km2 of ground, for frames that show {:g} m of it; asked at places: {}{}\n", map.id.name,
              ground_km2, options.query.footprint_m, found.places(),
              found.places() < kFewPlaces ? ", too few for more than a rough idea" : "");
   const auto line = [&](const char* word, std::int64_t places, const char* meaning) {

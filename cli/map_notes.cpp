@@ -43,7 +43,7 @@ void note_other_reader(const std::string& feature_map, const std::string& reader
   fmt::print(stderr,
              "note: the roads of {} were found by {}, and {} suits {} best: fixes are fewer. Detect them again with "
              "{}\n",
-             feature_map, reader, best, map.name,
+             feature_map, reader, best, map.id.name,
              of_roads ? "--compare-with roads" : "--compare-with imagery, or with that network by --model");
 }
 
@@ -55,13 +55,13 @@ std::shared_ptr<const RoadDetector> detector_for(const MapView& map, const Detec
         stderr,
         "note: {} holds imagery and road data, and frames are read by {}, which suits what has more tiles: fixes "
         "are fewer where only the other was ingested\n",
-        map.name, detector->describe());
+        map.id.name, detector->describe());
   }
   if (!is_reader_of(*detector, map.imagery_reader)) {
     fmt::print(stderr,
                "note: {} was read by {}, and frames are by {}: they find other roads, and fixes are fewer. Name the "
                "map's network with --model, or ingest its imagery anew\n",
-               map.name, *map.imagery_reader, detector->describe());
+               map.id.name, *map.imagery_reader, detector->describe());
   }
   return detector;
 }

@@ -36,8 +36,8 @@ void tidy(TrackRegistry& tracks) {
 void warn_of_another_reader(const ServedMap& map, const Detectors& detectors) {
   const std::optional<std::string>& reader = map.view.imagery_reader;
   if (detectors.include_reader(reader)) return;
-  spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer", map.name,
-               *reader);
+  spdlog::warn("map {} was read by {}: frames are read by another detector here, and fixes of them are fewer",
+               map.name(), *reader);
 }
 
 }  // namespace

@@ -71,7 +71,7 @@ void tell_prior(Query& query, const GridPoint& truth, Angle true_heading, const 
       query.unasked = kPriorOutsideMap;
       if (!map.extent.contains(truth)) return;
       throw InvalidInput(kPriorOutsideMap,
-                         fmt::format("{}: no such circle meets the map '{}'", describe(set), map.name));
+                         fmt::format("{}: no such circle meets the map '{}'", describe(set), map.id.name));
     }
   }
   if (const auto range = set.prior_heading_range) {
@@ -149,7 +149,7 @@ void require_same_plane(const QuerySet& set, const MapView& map, const MapView& 
   if (set.elsewhere || map.zone == from.zone) return;
   throw InvalidInput("map-of-another-zone", fmt::format("the maps '{}' and '{}' lie in different UTM zones: say "
                                                         "\"elsewhere\": true, or take maps of one place",
-                                                        map.name, from.name));
+                                                        map.id.name, from.id.name));
 }
 
 DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& from, const QueryDrawing& drawing) {
@@ -204,12 +204,12 @@ void require_places_near(const MapView& map, const std::vector<FrameTruth>& fram
   if (std::ranges::none_of(frames, on_map)) {
     throw InvalidInput("frames-outside-map",
                        fmt::format("{}: none of its frames lies on the map '{}', the first one, {}: {}",
-                                   set.path.string(), map.name, described(frames.front()), kAdvice));
+                                   set.path.string(), map.id.name, described(frames.front()), kAdvice));
   }
   const auto far = std::ranges::find_if_not(frames, in_zone);
   if (far == frames.end()) return;
   throw InvalidInput("position-outside-zone", fmt::format("{}: {} is too far from the UTM zone of the map '{}': {}",
-                                                          set.path.string(), described(*far), map.name, kAdvice));
+                                                          set.path.string(), described(*far), map.id.name, kAdvice));
 }
 
 std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,

@@ -6,7 +6,7 @@ MapView middle_of(const MapView& map, double side_m) {
   const GridPoint middle = map.extent.centre();
   MapView part = map;
   part.extent = intersection(map.extent, grown({middle, middle}, 0.5 * side_m));
-  part.version += "-part";
+  part.id.version += "-part";
   part.read = [read = map.read, box = part.extent](const GridGeometry& geometry) {
     RoadGrid grid = read(geometry);
     for (int row = 0; row < geometry.rows; ++row) {

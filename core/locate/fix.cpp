@@ -71,8 +71,7 @@ SearchOptions search_options_of(const FixOptions& options, const MapView& map) {
 
 Fix refused(const MapView& map, FootprintRefusal refusal) {
   Fix fix;
-  fix.map_name = map.name;
-  fix.map_version = map.version;
+  fix.map = map.id;
   fix.reason = refusal.reason;
   fix.explanation = std::move(refusal.explanation);
   return fix;
@@ -91,8 +90,7 @@ Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decisi
   fix.headings = found.headings;
   fix.scales = found.scales;
   fix.proof = found.proof;
-  fix.map_name = map.name;
-  fix.map_version = map.version;
+  fix.map = map.id;
   return fix;
 }
 

@@ -56,8 +56,7 @@ struct Fix {
   int headings = 0;
   int scales = 1;
   std::optional<SearchProof> proof;  ///< where one was asked for
-  std::string map_name;
-  std::string map_version;
+  MapId map;
   std::chrono::duration<double, std::milli> search_time{};
 };
 

@@ -42,7 +42,7 @@ Localizability localizability(const MapView& map, const LocalizabilityQuery& que
   }
   const GridPoint place = map.zone.project(query.position);
   if (!map.extent.empty() && !contains({place, query.radius_m}, nearest(map.extent, place))) {
-    throw InvalidInput("prior-outside-map", fmt::format("the place lies outside the map {}, {}: check it", map.name,
+    throw InvalidInput("prior-outside-map", fmt::format("the place lies outside the map {}, {}: check it", map.id.name,
                                                         shown_ground_beside({query.position, query.position},
                                                                             query.radius_m, map.zone, map.extent)));
   }

@@ -9,13 +9,13 @@
 
 #include "core/geodesy/utm.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/locate/map_id.hpp"
 #include "core/search/search_cache.hpp"
 
 namespace roadfix {
 
 struct MapView {
-  std::string name;
-  std::string version;  ///< changes whenever the cells of the map change
+  MapId id;
   UtmZone zone;
   double cell_m = 2.0;
   GridBox extent;  ///< box of the observed cells

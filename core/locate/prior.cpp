@@ -49,7 +49,7 @@ bool meet(const GridCircle& circle, const GridBox& box) {
 [[noreturn]] void refuse_outside(const MapView& map, const GeoBox& asked, double within_m) {
   throw InvalidInput("prior-outside-map",
                      fmt::format("the prior lies outside the map {}, {}: check its position, or search without it",
-                                 map.name, shown_ground_beside(asked, within_m, map.zone, map.extent)));
+                                 map.id.name, shown_ground_beside(asked, within_m, map.zone, map.extent)));
 }
 
 /// The largest difference to that in the middle of the box.
@@ -68,7 +68,7 @@ Angle convergence_range(const UtmZone& zone, const GridBox& box) {
 PoseRegion region_of(const MapView& map, const Prior& prior) {
   if (map.extent.empty() || map.extent.width_m() <= 0.0 || map.extent.height_m() <= 0.0) {
     throw InvalidInput("map-unobserved",
-                       fmt::format("the map {} holds no observed cell: ingest imagery or roads first", map.name));
+                       fmt::format("the map {} holds no observed cell: ingest imagery or roads first", map.id.name));
   }
   PoseRegion region;
   region.box = map.extent;

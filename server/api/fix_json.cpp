@@ -58,7 +58,7 @@ json to_json(const Fix& fix) {
                                    {"cell_m", fix.proof->cell_m},     {"headings", fix.proof->headings},
                                    {"scales", fix.proof->scales}};
   }
-  answer["map"] = map_json(fix.map_name, fix.map_version);
+  answer["map"] = to_json(fix.map);
   answer["made_by"] = made_by();
   answer["time_ms"] = {{"search", fix.search_time.count()}};
   return answer;
@@ -94,7 +94,7 @@ json to_json(std::span<const MatchScore> scores, const MapView& map) {
     }
     list.push_back(std::move(entry));
   }
-  return {{"scores", std::move(list)}, {"map", map_json(map.name, map.version)}};
+  return {{"scores", std::move(list)}, {"map", to_json(map.id)}};
 }
 
 }  // namespace roadfix::api

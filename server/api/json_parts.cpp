@@ -13,7 +13,7 @@ json bbox_json(const GeoBox& box) {
   return {box.south_west.lon_deg, box.south_west.lat_deg, box.north_east.lon_deg, box.north_east.lat_deg};
 }
 
-json map_json(const std::string& name, const std::string& version) { return {{"name", name}, {"version", version}}; }
+json to_json(const MapId& map) { return {{"name", map.name}, {"version", map.version}}; }
 
 json made_by(const std::optional<std::string>& detector) {
   json made{{"roadfix", ROADFIX_VERSION}};

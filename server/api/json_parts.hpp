@@ -7,6 +7,7 @@
 
 #include "core/geodesy/geo_box.hpp"
 #include "core/geodesy/geo_pose.hpp"
+#include "core/locate/map_id.hpp"
 
 namespace roadfix::api {
 
@@ -17,7 +18,7 @@ nlohmann::json pose_json(const GeoPose& pose);
 nlohmann::json bbox_json(const GeoBox& box);
 
 /// Which map an answer is about.
-nlohmann::json map_json(const std::string& name, const std::string& version);
+nlohmann::json to_json(const MapId& map);
 /// What made an answer: the version of the program, and the detector of frames, if any.
 nlohmann::json made_by(const std::optional<std::string>& detector = {});
 

@@ -41,7 +41,7 @@ std::string title_of(const FlownTrack& track) { return fmt::format("Track {}", x
 
 std::string source_of(const FlownTrack& track) {
   return fmt::format("Where roadfix {} found the UAV on the map {}, version {}. WGS 84, without heights",
-                     ROADFIX_VERSION, xml_text(track.map), xml_text(track.map_version));
+                     ROADFIX_VERSION, xml_text(track.map.name), xml_text(track.map.version));
 }
 
 std::string told_of(const Claim& claim) {

@@ -54,7 +54,7 @@ json history_json(const FlownTrack& track, std::span<const std::string> answers)
   }
   return {{"type", "FeatureCollection"},
           {"track", track.id},
-          {"map", map_json(track.map, track.map_version)},
+          {"map", to_json(track.map)},
           {"features", std::move(features)}};
 }
 

@@ -6,12 +6,13 @@
 #include <span>
 #include <string>
 
+#include "core/locate/map_id.hpp"
+
 namespace roadfix::api {
 
 struct FlownTrack {
   std::string id;
-  std::string map;
-  std::string map_version;
+  MapId map;
 };
 
 /// A FeatureCollection: a point for each step, with when, how well and by what it was told; those that had not

@@ -114,15 +114,14 @@ Window cut_window(const MapView& map, const WindowRequest& request, const Limits
   if (!box_around(pose, cols * cell_m, rows * cell_m, 0.0).overlaps(map.extent)) {
     throw InvalidInput(
         "window-outside-map",
-        fmt::format("the window lies outside the map {}: GET /v1/maps/{} gives its extent", map.name, map.name));
+        fmt::format("the window lies outside the map {}: GET /v1/maps/{} gives its extent", map.id.name, map.id.name));
   }
   const GridBox around = box_around(pose, cols * cell_m, rows * cell_m, 2.0 * source_m);
   return {cut_out(ground_within(map, around, source_m, limits), pose, n_cols, n_rows, cell_m),
           pose,
           {map.zone.unproject(pose.position), map.zone.true_from_grid(pose.heading, pose.position)},
           map.zone,
-          map.name,
-          map.version};
+          map.id};
 }
 
 std::array<double, 6> geotransform(const Window& window) {
@@ -139,7 +138,7 @@ std::array<double, 6> geotransform(const Window& window) {
 json to_json(const Window& window) {
   json answer = to_json(window.cells);
   answer["pose"] = pose_json(window.pose);
-  answer["map"] = map_json(window.map_name, window.map_version);
+  answer["map"] = to_json(window.map);
   answer["footprint"] = footprint(window);
   answer["epsg"] = window.zone.epsg();
   answer["geotransform"] = geotransform(window);

@@ -30,8 +30,7 @@ struct Window {
   GridPose grid_pose;  ///< of the window's centre
   GeoPose pose;
   UtmZone zone;
-  std::string map_name;
-  std::string map_version;
+  MapId map;
 };
 
 /// Throws InvalidInput ("window-outside-map") or LimitExceeded ("too-many-cells").

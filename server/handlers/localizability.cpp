@@ -49,7 +49,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   const SearchThreads::Share share(service.search_threads);
   query.fix.search.threads = share.threads();
   nlohmann::json answer = api::to_json(localizability(map->view, query));
-  answer["map"] = api::map_json(map->name, map->view.version);
+  answer["map"] = api::to_json(map->view.id);
   return json_response(answer);
 }
 
@@ -59,7 +59,7 @@ struct Layer {
   double footprint_m = 0.0;
   std::string style;
 
-  std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name, map->edition(), footprint_m); }
+  std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name(), map->edition(), footprint_m); }
 };
 
 Layer layer_of(const Service& service, const http::Request& request) {
@@ -130,7 +130,7 @@ http::Response get_localizability_tilejson(const Service& service, const http::R
   const Layer layer = layer_of(service, request);
   const std::string query = fmt::format("&footprint_m={}", layer.footprint_m) +
                             (layer.style == kTileStyles[0] ? "" : "&style=" + layer.style);
-  nlohmann::json answer = tilejson(request, *layer.map, layer.map->name + ", localizability", query);
+  nlohmann::json answer = tilejson(request, *layer.map, layer.map->name() + ", localizability", query);
   if (!layer.map->view.extent.empty()) {
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);
     answer["minzoom"] = zooms.first;

@@ -11,7 +11,7 @@ namespace {
 using nlohmann::json;
 
 json named(const ServedMap& map, json answer) {
-  answer["name"] = map.name;
+  answer["name"] = map.name();
   return answer;
 }
 
@@ -25,7 +25,7 @@ http::Response list(const Service& service, const http::Request& /*unused*/) {
     try {
       maps.push_back(named(*map, api::summary_json(map->reader->info())));
     } catch (const Error& error) {  // of one map; the others are still to be listed
-      maps.push_back(unreadable({map->name, error.code(), error.what()}));
+      maps.push_back(unreadable({map->name(), error.code(), error.what()}));
     }
   }
   for (const UnreadableMap& map : service.maps.unreadable()) maps.push_back(unreadable(map));

@@ -22,7 +22,8 @@ http::Response get_tile(const Service& service, const http::Request& request) {
   const std::string style = api::Fields(request.query).word("style", kTileStyles);
   const auto map = service.maps.find(at.at("map"));
   return tile_response(request, entity_tag(map->edition(), style + request.path), [&] {
-    const std::string key = fmt::format("{}/{}/{}/{}/{}/{}", map->name, map->edition(), style, tile.z, tile.x, tile.y);
+    const std::string key =
+        fmt::format("{}/{}/{}/{}/{}/{}", map->name(), map->edition(), style, tile.z, tile.x, tile.y);
     return kept_or_drawn(service.pictures, key, [&] { return api::tile_png(map->view, tile, tile_style(style)); });
   });
 }
@@ -30,7 +31,7 @@ http::Response get_tile(const Service& service, const http::Request& request) {
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const std::string style = api::Fields(request.query).word("style", kTileStyles);
-  json answer = tilejson(request, *map, map->name, style == kTileStyles[0] ? "" : "&style=" + style);
+  json answer = tilejson(request, *map, map->name(), style == kTileStyles[0] ? "" : "&style=" + style);
   answer.update({{"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
   const MapView& view = map->view;
   if (!view.extent.empty()) {

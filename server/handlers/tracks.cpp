@@ -56,7 +56,7 @@ json status_json(const Service& service, const StoredTrack& track) {
   const auto left =
       std::max(service.tracks.limits().idle - service.tracks.times().idle(track.id), std::chrono::milliseconds(0));
   return {{"id", track.id},
-          {"map", api::map_json(track.map, track.map_version)},
+          {"map", api::to_json(track.map)},
           {"request", api::stored_json(track.request)},
           {"created_us", track.created_us},
           {"touched_us", track.touched_us},
@@ -131,7 +131,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   }
   const api::TimeLimit limit(request.deadline);
   if (api::shows_ground(step.content)) {
-    const auto map = service.maps.find(track.map);
+    const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features =
         api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits);
@@ -198,7 +198,7 @@ http::Response get_history(const Service& service, const http::Request& request,
   for (StoredStep& step : service.tracks.steps_after(track.id, after, limit)) {
     answers.push_back(std::move(step.answer));
   }
-  http::Response response = history({track.id, track.map, track.map_version}, answers, media);
+  http::Response response = history({track.id, track.map}, answers, media);
   response.headers.emplace_back("Vary", "Accept");
   return response;
 }

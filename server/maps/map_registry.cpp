@@ -72,7 +72,7 @@ bool says_the_same(const MapInfo& a, const MapInfo& b) {
 
 }  // namespace
 
-std::string ServedMap::edition() const { return fmt::format("{}-{}", view.version, reader->info().pending); }
+std::string ServedMap::edition() const { return fmt::format("{}-{}", view.id.version, reader->info().pending); }
 
 MapRegistry::MapRegistry(fs::path folder, MapCacheBytes cache_bytes, OnServing on_serving)
     : folder_(std::move(folder)), cache_bytes_(cache_bytes), on_serving_(std::move(on_serving)) {
@@ -142,7 +142,7 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
   const std::string name = path.stem();
   try {
     const auto reader = std::make_shared<const MapReader>(path, cache_bytes_.tiles, kLockPatience);
-    auto map = std::make_shared<const ServedMap>(ServedMap{name, reader, view_of(reader, name, cache_bytes_.searches)});
+    auto map = std::make_shared<const ServedMap>(ServedMap{reader, view_of(reader, name, cache_bytes_.searches)});
     spdlog::info("serving map {} version {}", name, reader->info().version);
     const std::string missing = missing_of(reader->info());
     if (!missing.empty()) spdlog::warn("map {} lacks what an ingest has not brought yet ({})", name, missing);

@@ -23,10 +23,10 @@ namespace roadfix::server {
 
 /// A map as it was when it was opened. Requests keep it alive while a newer one takes its place.
 struct ServedMap {
-  std::string name;
   std::shared_ptr<const MapReader> reader;
   MapView view;
 
+  const std::string& name() const { return view.id.name; }
   /// Tells one look of the map from another. Its version does not: it is that of the finest cells, which are fused
   /// before the overviews.
   std::string edition() const;

@@ -90,7 +90,7 @@ StoredTrack TrackRegistry::create(const std::string& client, const std::string& 
                     flying.size(), own, limits_.tracks, limits_.tracks_per_client));
   }
   const std::int64_t now = now_us();
-  StoredTrack track{new_id(), client, request, asked.map, map->view.version, now, now, {}};
+  StoredTrack track{new_id(), client, request, map->view.id, now, now, {}};
   times_.begin(track.id);  // before others see it in the store, or it would have been silent since the service started
   try {
     store().add(track);
@@ -159,13 +159,13 @@ TrackEvents::News TrackRegistry::news(const std::string& id, std::int64_t after,
 
 std::shared_ptr<LiveTrack> TrackRegistry::live(const std::string& id) {
   const StoredTrack track = find(id);
-  const auto map = maps_.find(track.map);
+  const auto map = maps_.find(track.map.name);
   const std::lock_guard lock(mutex_);
-  if (map->view.version != track.map_version) {
+  if (map->view.id.version != track.map.version) {
     live_.erase(id);  // and lets go of the old map
     throw InvalidInput("map-replaced", fmt::format("the map {} was replaced since the track began: begin a new track "
                                                    "from the last pose",
-                                                   track.map));
+                                                   track.map.name));
   }
   const auto known = live_.find(id);
   if (known != live_.end()) return known->second;

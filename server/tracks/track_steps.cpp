@@ -58,7 +58,7 @@ StepAnswer TrackSteps::take(const std::string& id, const SentStep& step, const S
   StepResult result = track->tracker().advance(turn.state(), step.input, limits);
   nlohmann::json answer = api::to_json(result.estimate);
   answer["track"] = id;
-  answer["map"] = api::map_json(track->map().name, track->map().view.version);
+  answer["map"] = api::to_json(track->map().view.id);
   answer["made_by"] = api::made_by(step.detector);
   std::string text = json_text(answer);
   turn.doubt();

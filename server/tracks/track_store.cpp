@@ -23,8 +23,8 @@ std::optional<TrackEnd> end_of(std::string_view column) {
 }
 
 StoredTrack track_of(const sqlite::Statement& row) {
-  return {row.text(0), row.text(1),    row.text(2),    row.text(3),
-          row.text(4), row.integer(5), row.integer(6), end_of(row.text(7))};
+  return {row.text(0),    row.text(1),    row.text(2),        {row.text(3), row.text(4)},
+          row.integer(5), row.integer(6), end_of(row.text(7))};
 }
 
 void delete_steps(sqlite::Connection& connection, const std::string& id) {
@@ -110,7 +110,7 @@ void TrackStore::add(const StoredTrack& t) {
       make_room(*file_);
       sqlite::Statement(connection,
                         fmt::format("INSERT INTO tracks ({}) VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, '')", kTrackColumns))
-          .with(t.id, t.client, t.request, t.map, t.map_version, t.created_us, t.touched_us)
+          .with(t.id, t.client, t.request, t.map.name, t.map.version, t.created_us, t.touched_us)
           .run();
       transaction.commit();
     });

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "core/locate/map_id.hpp"
 #include "core/units/file.hpp"
 
 namespace roadfix::server {
@@ -27,8 +28,7 @@ struct StoredTrack {
   std::string id;
   std::string client;
   std::string request;  ///< JSON
-  std::string map;
-  std::string map_version;
+  MapId map;
   std::int64_t created_us = 0;
   std::int64_t touched_us = 0;
   std::optional<TrackEnd> ended;  ///< nullopt while it flies

@@ -8,8 +8,7 @@ namespace roadfix::testing {
 
 /// In UTM zone 34 north; the extent is the whole grid.
 inline MapView view_of(const RoadGrid& map) {
-  return {"town",
-          "1",
+  return {{"town", "1"},
           UtmZone::from_epsg(32634).value(),
           map.geometry.cell_m,
           map.geometry.box(),

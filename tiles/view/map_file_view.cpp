@@ -28,8 +28,7 @@ std::function<double(GridPoint)> registration_around(std::shared_ptr<const MapRe
 
 MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::size_t search_cache_bytes) {
   const MapInfo& info = reader->info();
-  return {std::move(name),
-          info.version,
+  return {{std::move(name), info.version},
           info.settings.zone,
           info.settings.cell_m,
           info.extent,

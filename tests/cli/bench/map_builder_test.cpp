@@ -26,16 +26,16 @@ TEST_F(MapBuilder, KeepsMapsOfTheSameNameApart) {
   const MapView there = build_map({"town", {{other / "town.png", As::kImagery}}}, building);
   const MapView both =
       build_map({"town", {{folder / "town.png", As::kImagery}, {other / "town.png", As::kImagery}}}, building);
-  EXPECT_NE(here.version, there.version);
-  EXPECT_NE(here.version, both.version);
-  EXPECT_EQ(here.version, build_map({"town", {{folder / "town.png", As::kImagery}}}, building).version);
+  EXPECT_NE(here.id.version, there.id.version);
+  EXPECT_NE(here.id.version, both.id.version);
+  EXPECT_EQ(here.id.version, build_map({"town", {{folder / "town.png", As::kImagery}}}, building).id.version);
 }
 
 TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
   const ManifestMap map{"town", {{{}, As::kInvented, 3, 800.0}}};
   MapBuilding building = options.maps;
   building.version = "1";
-  const std::string version = build_map(map, building).version;
+  const std::string version = build_map(map, building).id.version;
   const auto towns = [&] {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(building.cache)) {
@@ -45,7 +45,7 @@ TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
   };
   ASSERT_EQ(towns().size(), 1U);
   std::ofstream(towns().front()) << R"({"type": "FeatureCollection", "features": []})";
-  EXPECT_EQ(build_map(map, building).version, version);
+  EXPECT_EQ(build_map(map, building).id.version, version);
 }
 
 TEST_F(MapBuilder, MapsBothSidesOfTheEquator) {

@@ -14,8 +14,7 @@ const UtmZone kZone = UtmZone::containing({37.7, 38.3});
 const GridPoint kFarFromTheMeridian{180'000.0, 4'180'000.0};
 
 MapView map_registered_to(double sigma_m) {
-  return {.name = "map",
-          .version = "1",
+  return {.id = {"map", "1"},
           .zone = kZone,
           .extent = {},
           .registration_sigma_m = [sigma_m](GridPoint) { return sigma_m; },

@@ -24,7 +24,7 @@ TEST_F(Locate, FixesAWindowOfTheMapInTrueHeading) {
   EXPECT_GE(fix.probability, 0.99);
   EXPECT_LT(error_m(fix.modes[0].pose, truth), 2.0);
   EXPECT_LT(angular_distance(fix.modes[0].pose.heading, on_earth(truth, view_.zone).heading).degrees(), 0.5);
-  EXPECT_EQ(fix.map_name, view_.name);
+  EXPECT_EQ(fix.map.name, view_.id.name);
   EXPECT_NEAR(fix.searched_km2, 2.4 * 1.8, 1e-6);
   EXPECT_GE(fix.modes[0].ellipse.sigma_m[0], fix.modes[0].ellipse.sigma_m[1]);
 }

@@ -10,9 +10,13 @@
 namespace roadfix {
 namespace {
 
-const MapView kCity{
-    "city", "1", UtmZone::from_epsg(32637).value(), 0.25, {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}}, {},
-    {},     {}};
+const MapView kCity{{"city", "1"},
+                    UtmZone::from_epsg(32637).value(),
+                    0.25,
+                    {{430'000.0, 4'170'000.0}, {440'000.0, 4'180'000.0}},
+                    {},
+                    {},
+                    {}};
 
 TEST(InCellsOf, TakesANadirAsFarOffAsItsHeadingsAreSearchedForAndNoFarther) {
   const auto code = [&](int side, double nadir_row) {

@@ -13,7 +13,7 @@ namespace roadfix {
 namespace {
 
 MapView map_of(int epsg, const GridBox& extent) {
-  return {"country", "1", UtmZone::from_epsg(epsg).value(), 16.0, extent, {}, {}, {}};
+  return {{"country", "1"}, UtmZone::from_epsg(epsg).value(), 16.0, extent, {}, {}, {}};
 }
 
 GridBox region(const MapView& map, const GeoBox& box) {

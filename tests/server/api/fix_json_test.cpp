@@ -29,7 +29,7 @@ TEST(FixJson, AFixCarriesItsPoseAtTheTop) {
   fix.searched_km2 = 24.6;
   fix.proof = SearchProof{4.0, 472, 1, 0.6, 0.8, false, 0.97};
   fix.headings = 360;
-  fix.map_name = "adiyaman";
+  fix.map.name = "adiyaman";
   Features frame;
   frame.detect_time = std::chrono::milliseconds(140);
   frame.detector = "tree";

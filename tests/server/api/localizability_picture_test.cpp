@@ -15,7 +15,7 @@ constexpr double kFootprintM = 400.0;
 
 /// 8 x 8 km on the Equator, where a tile of zoom 15 is 1223 m wide. Nobody reads its cells.
 MapView wide_map() {
-  return {"city", "v1", *UtmZone::from_epsg(32637), 2.0, {{496'000, 100'000}, {504'000, 108'000}}, {}, {}, {}};
+  return {{"city", "v1"}, *UtmZone::from_epsg(32637), 2.0, {{496'000, 100'000}, {504'000, 108'000}}, {}, {}, {}};
 }
 
 TileAddress tile_of(const MapView& map, GridPoint at, int zoom) {

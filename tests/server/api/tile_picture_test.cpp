@@ -32,7 +32,7 @@ MapView striped_map() {
     }
     return part;
   };
-  return {"city", "v1", *UtmZone::from_epsg(32637), 2.0, whole.box(), {}, {}, read};
+  return {{"city", "v1"}, *UtmZone::from_epsg(32637), 2.0, whole.box(), {}, {}, read};
 }
 
 TileAddress tile_of(LatLon at, int zoom) {

@@ -10,7 +10,7 @@
 namespace roadfix::api {
 namespace {
 
-const FlownTrack kTrack{"5f1c", "a&b<c>\x01\xff", "7f3a"};
+const FlownTrack kTrack{"5f1c", {"a&b<c>\x01\xff", "7f3a"}};
 
 std::string answer_at(double lon_deg, int sequence = 1, std::int64_t time_us = 1) {
   return nlohmann::json{{"sequence", sequence},

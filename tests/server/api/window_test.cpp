@@ -26,7 +26,7 @@ MapView map_of(const std::string& picture) {
           whole.geometry.origin.row - asked.origin.row);
     return part;
   };
-  return {"city", "v1", *UtmZone::from_epsg(32637), 2.0, geometry.box(), {}, {}, read};
+  return {{"city", "v1"}, *UtmZone::from_epsg(32637), 2.0, geometry.box(), {}, {}, read};
 }
 
 constexpr const char* kPicture = R"(

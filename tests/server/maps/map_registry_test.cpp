@@ -43,12 +43,12 @@ TEST(MapRegistry, NoticesMapsThatAppearChangeAndLeave) {
   make_map(folder / "city.gpkg", 1);
   registry.refresh();
   const auto first = registry.find("city");
-  EXPECT_EQ(first->view.name, "city");
+  EXPECT_EQ(first->name(), "city");
 
   make_map(folder / "city.gpkg", 2, true);
   registry.refresh();
   const auto second = registry.find("city");
-  EXPECT_NE(second->view.version, first->view.version);
+  EXPECT_NE(second->view.id.version, first->view.id.version);
   EXPECT_EQ(code_of([&] { first->view.read(GridGeometry::covering(first->view.extent, 2.0)); }), "map-renewed")
       << "requests under way mix no tiles of the two";
 
@@ -61,7 +61,7 @@ TEST(MapRegistry, TellsOfEachMapThatItServesFromNowOn) {
   const TemporaryFolder folder;
   make_map(folder / "there.gpkg", 1);
   std::vector<std::string> told;
-  MapRegistry registry(folder.path(), kCache, [&](const ServedMap& map) { told.push_back(map.name); });
+  MapRegistry registry(folder.path(), kCache, [&](const ServedMap& map) { told.push_back(map.name()); });
   EXPECT_EQ(told, std::vector<std::string>{"there"});
   make_map(folder / "later.gpkg", 1);
   make_map(folder / "there.gpkg", 2, true);
@@ -98,7 +98,7 @@ TEST(MapRegistry, KeepsAMapThatAWriterHasLockedAsItWasAndItsReadersWaitOnlyASeco
     writer.execute("UPDATE roadfix_meta SET value = '0123456789abcdef' WHERE key = 'version'; COMMIT");
   }
   registry.refresh();
-  EXPECT_EQ(registry.find("city")->view.version, "0123456789abcdef") << "the next look sees what was written";
+  EXPECT_EQ(registry.find("city")->view.id.version, "0123456789abcdef") << "the next look sees what was written";
   EXPECT_NO_THROW(registry.find("city")->view.read(GridGeometry::covering(city->view.extent, 2.0)));
 }
 
@@ -129,7 +129,7 @@ TEST(MapRegistry, AsksToComeBackForAMapThatIsLockedWhenItAppears) {
   EXPECT_EQ(code_of([&] { registry.find("city"); }), "map-busy");
   writer.execute("ROLLBACK");
   registry.refresh();
-  EXPECT_EQ(registry.find("city")->name, "city");
+  EXPECT_EQ(registry.find("city")->name(), "city");
 }
 
 TEST(MapRegistry, LogsWhichMapsLackBlocksOfAnIngestThatWasInterrupted) {
@@ -203,7 +203,7 @@ TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   fs::remove(folder / "broken.gpkg");
   make_map(folder / "broken.gpkg", 3);
   registry.refresh();
-  EXPECT_EQ(registry.find("broken")->name, "broken") << "a repaired map is served";
+  EXPECT_EQ(registry.find("broken")->name(), "broken") << "a repaired map is served";
 }
 
 TEST(MapRegistry, TakesNoHiddenFileForAMap) {
@@ -228,7 +228,7 @@ TEST(MapRegistry, TakesTheExtensionInAnyCaseAndOfTwoTheUsualOneAndLogsTheOtherOn
   for (int look = 0; look < 3; ++look) registry.refresh();
   EXPECT_EQ(log.count("is not served: another file"), 1);
   EXPECT_EQ(log.count((folder / "town.Gpkg").string() + " is not served"), 1);
-  EXPECT_EQ(registry.find("town")->view.version, MapReader(folder / "town.gpkg").info().version);
+  EXPECT_EQ(registry.find("town")->view.id.version, MapReader(folder / "town.gpkg").info().version);
   EXPECT_EQ(registry.maps().size(), 2U);
 }
 
@@ -244,7 +244,7 @@ TEST(MapRegistry, SaysThatALinkLeadsNowhere) {
   EXPECT_NE(registry.unreadable()[0].reason.find("a link to a file that is not there"), std::string::npos);
   make_map(disk / "city.gpkg", 1);
   registry.refresh();
-  EXPECT_EQ(registry.find("city")->name, "city") << "its disk is there by now";
+  EXPECT_EQ(registry.find("city")->name(), "city") << "its disk is there by now";
 }
 
 TEST(MapRegistry, ServesAMapOnceItMayReadIt) {

@@ -135,7 +135,7 @@ TEST_F(TrackRegistryTest, ShowsWhatAnExpiredTrackFlewUntilItIsDeleted) {
   for (const bool tidied : {false, true}) {
     if (tidied) tracks->tidy();
     EXPECT_EQ(code_of([&] { tracks->find(id); }), "track-ended");
-    EXPECT_EQ(tracks->recorded(id).map, "town");
+    EXPECT_EQ(tracks->recorded(id).map.name, "town");
     EXPECT_EQ(tracks->steps_after(id, -1, 10).size(), 1U);
   }
   tracks->finish(id);

@@ -39,7 +39,7 @@ TEST_F(TrackStepsTest, NamesTheMapTheProgramAndTheDetectorInWhatItKeeps) {
   const std::string id = begin(*tracks);
   TrackSteps(*tracks).take(id, sent(step_of(0)), {});
   const auto kept = nlohmann::json::parse(tracks->last_step(id).value().answer);
-  EXPECT_EQ(kept["map"], (nlohmann::json{{"name", "town"}, {"version", maps_.find("town")->view.version}}));
+  EXPECT_EQ(kept["map"], (nlohmann::json{{"name", "town"}, {"version", maps_.find("town")->view.id.version}}));
   EXPECT_TRUE(kept["made_by"].contains("roadfix"));
   EXPECT_FALSE(kept["made_by"].contains("detector"));
   TrackSteps(*tracks).take(id, {step_of(1), 1, TrackTimes::Clock::now(), "tree"}, {});

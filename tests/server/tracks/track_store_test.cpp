@@ -22,7 +22,7 @@ using ::testing::HasSubstr;
 
 constexpr std::int64_t kPlenty = std::int64_t{1} << 30;
 
-StoredTrack track(const std::string& id) { return {id, "::1", "{}", "town", "v1", 1, 1, {}}; }
+StoredTrack track(const std::string& id) { return {id, "::1", "{}", {"town", "v1"}, 1, 1, {}}; }
 
 std::vector<std::byte> state(std::size_t bytes) { return std::vector<std::byte>(bytes, std::byte{7}); }
 

@@ -22,8 +22,8 @@ TEST(MapFileView, AMapFileAnswersWhereAFootprintWasSeen) {
   const testing::TemporaryFolder folder;
   testing::write_map_file(folder / "town.gpkg", town, 1.5);
   const MapView view = view_of(std::make_shared<MapReader>(folder / "town.gpkg"), "town");
-  EXPECT_EQ(view.name, "town");
-  EXPECT_FALSE(view.version.empty());
+  EXPECT_EQ(view.id.name, "town");
+  EXPECT_FALSE(view.id.version.empty());
   EXPECT_EQ(view.registration_sigma_m(town.geometry.box().centre()), 1.5);
 
   std::mt19937_64 random(32);
@@ -32,7 +32,7 @@ TEST(MapFileView, AMapFileAnswersWhereAFootprintWasSeen) {
   ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason;
   EXPECT_LT(distance_m(view.zone.project(fix.modes[0].pose.position), truth.position), 1.5);
   EXPECT_GT(fix.modes[0].ellipse.sigma_m[1], 1.5) << "the registration error of the map is part of the answer's";
-  EXPECT_EQ(fix.map_version, view.version);
+  EXPECT_EQ(fix.map.version, view.id.version);
 }
 
 TEST(MapFileView, ASourceCountsForTheAccuracyOfTheGroundAroundItOnly) {

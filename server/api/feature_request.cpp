@@ -3,11 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
+#include "core/units/words.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/frame_scale.hpp"
 #include "server/http/errors.hpp"
@@ -19,8 +21,8 @@ using http::InvalidField;
 
 constexpr Range kFeatureCell{0.0, 1000.0, true};
 
-constexpr std::string_view kKinds[] = {"feature_map", "frame"};
-constexpr std::string_view kBorders[] = {"seen", "black"};
+constexpr std::array<Word<bool>, 2> kIsFrame{{{"feature_map", false}, {"frame", true}}};
+constexpr std::array<Word<Border>, 2> kBorders{{{"seen", Border::kSeen}, {"black", Border::kBlackUnseen}}};
 
 void require_picture(const Content& content) {
   if (content.image.empty()) {
@@ -87,7 +89,7 @@ FeatureMap given_map(const Content& content, const Limits& limits) {
 Frame given_frame(const Content& content, const Limits& limits, const std::stop_token& stop) {
   require_picture(content);
   const Fields& fields = content.fields;
-  const Border border = fields.word("unobserved", kBorders) == "black" ? Border::kBlackUnseen : Border::kSeen;
+  const Border border = fields.choice("unobserved", kBorders);
   const cv::Mat pixels = decode_frame(content.image, limits.pixels, stop);
   return {pixels, parse_frame_scale(fields, content.image), border};
 }
@@ -164,7 +166,7 @@ std::optional<Angle> told_nadir_heading_sigma(const Fields& fields) {
 
 Features features_of(const Content& content, const Detection& detection, const Limits& limits) {
   Features features;
-  if (content.fields.word("kind", kKinds) == "frame") {
+  if (content.fields.choice("kind", kIsFrame)) {
     require_frame(content.fields);
     features = detected(content, detection, limits);
   } else {

@@ -2,9 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <string_view>
 
 #include "core/detect/frame.hpp"
+#include "core/units/words.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -15,7 +17,8 @@ using http::InvalidField;
 constexpr Range kGsd{kFinestGsdM, kCoarsestGsdM};
 constexpr Range kHeight{0.0, 20'000.0, true};
 constexpr Range kQuarterTurn{-90.0, 90.0};
-constexpr std::string_view kLenses[] = {"perspective", "fisheye"};
+constexpr std::array<Word<LensModel>, 2> kLenses{
+    {{"perspective", LensModel::kPerspective}, {"fisheye", LensModel::kFisheye}}};
 
 const std::vector<std::string>& lens_fields() {
   static const std::vector<std::string> kFields{"fov_deg", "focal_px", "principal_px", "lens", "distortion"};
@@ -45,7 +48,7 @@ FrameCamera told_camera(const Fields& fields) {
                        "a frame needs gsd_m, or agl_m with one of fov_deg and focal_px, or exif=true where its file "
                        "tells the camera");
   }
-  camera.lens = fields.word("lens", kLenses) == "fisheye" ? LensModel::kFisheye : LensModel::kPerspective;
+  camera.lens = fields.choice("lens", kLenses);
   if (const auto principal = fields.optional_numbers("principal_px", 2)) {
     camera.principal_px = cv::Point2d(principal->at(0), principal->at(1));
   }

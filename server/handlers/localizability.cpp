@@ -57,7 +57,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
 struct Layer {
   std::shared_ptr<const ServedMap> map;
   double footprint_m = 0.0;
-  std::string style;
+  api::TileStyle style = api::TileStyle::kColour;
 
   std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name(), map->edition(), footprint_m); }
 };
@@ -66,7 +66,7 @@ Layer layer_of(const Service& service, const http::Request& request) {
   const api::Fields fields(request.query);
   return {service.maps.find(request.path_parameters.at("map")),
           fields.optional_number("footprint_m", kFootprint).value_or(kUsualFootprintM),
-          fields.word("style", kTileStyles)};
+          fields.choice("style", kTileStyles)};
 }
 
 std::optional<api::PlaceAnswer> searched(const Service& service, const http::Request& request, const Layer& layer,
@@ -102,18 +102,18 @@ std::string drawn(const Service& service, const http::Request& request, const La
     tiles.places.insert(key, answer, kPlaceBytes + 2 * key.size());
     return answer;
   };
-  const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), layer.style, tile.z, tile.x, tile.y);
+  const std::string key = fmt::format("{}/{}/{}/{}/{}", layer.key(), to_string(layer.style), tile.z, tile.x, tile.y);
   return kept_or_drawn(service.pictures, key, [&] {
     const http::Admission::Ticket turn = tiles.turns.enter(request.client, request.deadline, request.abandoned);
-    return api::localizability_png(layer.map->view, tile, layer.footprint_m, tile_style(layer.style), answer_at);
+    return api::localizability_png(layer.map->view, tile, layer.footprint_m, layer.style, answer_at);
   });
 }
 
 /// A service that is started with another calibration draws other tiles.
 std::string variation(const Service& service, const Layer& layer, const std::string& path) {
   const Calibration& c = *service.calibration;
-  std::string key = fmt::format("{} {} {} {} {} {} {}", path, layer.footprint_m, layer.style, c.bias, c.highest,
-                                c.position_sigma_scale, c.heading_sigma_scale);
+  std::string key = fmt::format("{} {} {} {} {} {} {}", path, layer.footprint_m, to_string(layer.style), c.bias,
+                                c.highest, c.position_sigma_scale, c.heading_sigma_scale);
   for (const Calibration::Term& term : c.terms) key += fmt::format(" {} {}", term.weight, term.max);
   return key;
 }
@@ -128,8 +128,7 @@ http::Response get_localizability_tile(const Service& service, const http::Reque
 
 http::Response get_localizability_tilejson(const Service& service, const http::Request& request) {
   const Layer layer = layer_of(service, request);
-  const std::string query = fmt::format("&footprint_m={}", layer.footprint_m) +
-                            (layer.style == kTileStyles[0] ? "" : "&style=" + layer.style);
+  const std::string query = fmt::format("&footprint_m={}", layer.footprint_m) + style_query(layer.style);
   nlohmann::json answer = tilejson(request, *layer.map, layer.map->name() + ", localizability", query);
   if (!layer.map->view.extent.empty()) {
     const api::ZoomRange zooms = api::localizability_zooms(layer.map->view, layer.footprint_m);

@@ -21,8 +21,8 @@ GeoBox not_wrapped(GeoBox box) {
 
 }  // namespace
 
-api::TileStyle tile_style(std::string_view word) {
-  return word == "grey" ? api::TileStyle::kGrey : api::TileStyle::kColour;
+std::string style_query(api::TileStyle style) {
+  return style == kTileStyles.front().value ? "" : fmt::format("&style={}", to_string(style));
 }
 
 std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const DrawTile& draw) {

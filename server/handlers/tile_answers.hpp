@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/units/words.hpp"
 #include "server/api/tile_picture.hpp"
 #include "server/http/message.hpp"
 #include "server/maps/map_registry.hpp"
@@ -17,9 +18,12 @@
 
 namespace roadfix::server {
 
-/// Words of the parameter "style", the usual one first.
-inline constexpr std::array<std::string_view, 2> kTileStyles{"colour", "grey"};
-api::TileStyle tile_style(std::string_view word);
+/// Of the parameter "style", the usual one first.
+inline constexpr std::array<Word<api::TileStyle>, 2> kTileStyles{
+    {{"colour", api::TileStyle::kColour}, {"grey", api::TileStyle::kGrey}}};
+constexpr std::string_view to_string(api::TileStyle style) { return word_of(kTileStyles, style); }
+/// To ask for it by, behind another parameter: "&style=grey"; empty for the usual one.
+std::string style_query(api::TileStyle style);
 
 /// The picture, or nothing where there is nothing to see.
 using DrawTile = std::function<std::optional<std::vector<std::uint8_t>>()>;

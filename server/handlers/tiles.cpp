@@ -19,19 +19,19 @@ constexpr int kZoomsBeyondNative = 3;
 http::Response get_tile(const Service& service, const http::Request& request) {
   const auto& at = request.path_parameters;
   const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
-  const std::string style = api::Fields(request.query).word("style", kTileStyles);
+  const api::TileStyle style = api::Fields(request.query).choice("style", kTileStyles);
   const auto map = service.maps.find(at.at("map"));
-  return tile_response(request, entity_tag(map->edition(), style + request.path), [&] {
+  return tile_response(request, entity_tag(map->edition(), fmt::format("{}{}", to_string(style), request.path)), [&] {
     const std::string key =
-        fmt::format("{}/{}/{}/{}/{}/{}", map->name(), map->edition(), style, tile.z, tile.x, tile.y);
-    return kept_or_drawn(service.pictures, key, [&] { return api::tile_png(map->view, tile, tile_style(style)); });
+        fmt::format("{}/{}/{}/{}/{}/{}", map->name(), map->edition(), to_string(style), tile.z, tile.x, tile.y);
+    return kept_or_drawn(service.pictures, key, [&] { return api::tile_png(map->view, tile, style); });
   });
 }
 
 http::Response get_tilejson(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const std::string style = api::Fields(request.query).word("style", kTileStyles);
-  json answer = tilejson(request, *map, map->name(), style == kTileStyles[0] ? "" : "&style=" + style);
+  const api::TileStyle style = api::Fields(request.query).choice("style", kTileStyles);
+  json answer = tilejson(request, *map, map->name(), style_query(style));
   answer.update({{"minzoom", 0}, {"maxzoom", api::kMaxZoom}});
   const MapView& view = map->view;
   if (!view.extent.empty()) {

@@ -22,6 +22,7 @@
 #include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/json_text.hpp"
@@ -63,8 +64,7 @@ void require_png_name(const std::string& target) {
 void require_no_other_picture(const std::string& target) {
   if (!std::filesystem::is_regular_file(target) || is_standard_output(target)) return;
   const std::string there = read_file(target).value_or("");
-  const Bytes bytes(reinterpret_cast<const std::uint8_t*>(there.data()), there.size());
-  if (!read_image_header(bytes) || is_feature_map(bytes)) return;
+  if (!read_image_header(bytes_of(there)) || is_feature_map(bytes_of(there))) return;
   throw InvalidInput("target-is-picture",
                      fmt::format("{} is a picture and no feature map of roadfix: the last name is what gets written, "
                                  "so name a new file or a folder",
@@ -162,7 +162,7 @@ void detect(const DetectOptions& options, const Job& job, const RoadDetector& de
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", job.image));
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map, detector.describe());
-  write_file(job.target, {reinterpret_cast<const char*>(png.data()), png.size()});
+  write_file(job.target, characters_of(png));
   if (std::filesystem::is_regular_file(job.target) && !is_standard_output(job.target)) {
     remove_side_files(job.target);
     if (picture.place) write_place(job.target, *picture.place, options.cell_m);

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
 #include "cli/limits.hpp"
 #include "cli/number_checks.hpp"
@@ -10,6 +11,7 @@
 #include "cli/unit_options.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "server/api/frame_scale.hpp"
@@ -17,18 +19,17 @@
 namespace roadfix::cli {
 namespace {
 
-std::vector<std::uint8_t> bytes_of(const std::string& path) {
+std::string read_picture(const std::string& path) {
   if (std::filesystem::is_directory(path)) {
     throw InvalidInput("not-a-file", fmt::format("{} is a folder: name a PNG or JPEG file", path));
   }
   require_not_empty(path);
-  const std::string bytes = read_named_file(path);
-  return {bytes.begin(), bytes.end()};
+  return read_named_file(path);
 }
 
 auto decoded(const std::string& path, const auto& decode) {
-  const std::vector<std::uint8_t> bytes = bytes_of(path);
-  return said_of(path, [&] { return decode(bytes); });
+  const std::string picture = read_picture(path);
+  return said_of(path, [&] { return decode(bytes_of(picture)); });
 }
 
 FrameCamera told_camera(const FrameCamera& camera) {
@@ -40,7 +41,7 @@ api::FrameScale scale_of(const std::string& path, const FrameOptions& options) {
   if (options.camera_in_file) {
     const FrameCamera& told = options.camera;
     const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
-    return decoded(path, [&](const auto& bytes) { return api::scale_in_file(bytes, known); });
+    return decoded(path, [&](Bytes bytes) { return api::scale_in_file(bytes, known); });
   }
   if (!options.has_camera()) return {StraightDown{options.gsd_m}};
   return {told_camera(options.camera)};
@@ -115,13 +116,13 @@ void require_frame_for(const FrameOptions& options) {
 }
 
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
-  const cv::Mat pixels = decoded(path, [](const auto& bytes) { return decode_frame(bytes, kMaxPixels); });
+  const cv::Mat pixels = decoded(path, [](Bytes bytes) { return decode_frame(bytes, kMaxPixels); });
   const api::Frame frame{pixels, scale_of(path, options), options.black_unseen ? Border::kBlackUnseen : Border::kSeen};
   return said_of(path, [&] { return api::seen_frame(frame, detector, kMaxPixels); });
 }
 
 FoundFeatureMap feature_map_in(const std::string& path, const ToldScale& told) {
-  return decoded(path, [&](const auto& bytes) {
+  return decoded(path, [&](Bytes bytes) {
     if (!told.cell_m && !is_feature_map(bytes)) {
       throw InvalidInput(
           "input-kind-missing",

@@ -7,6 +7,7 @@
 
 #include "cli/limits.hpp"
 #include "core/detect/feature_map_codec.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 
@@ -18,8 +19,8 @@ std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
 
 FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {
   const std::string file = read_named_file(folder / frame.file);
-  const std::vector<std::uint8_t> bytes(file.begin(), file.end());
-  return said_of(frame.file.string(), [&] { return frame_image(decode_frame(bytes, cli::kMaxPixels), border); });
+  return said_of(frame.file.string(),
+                 [&] { return frame_image(decode_frame(bytes_of(file), cli::kMaxPixels), border); });
 }
 
 GroundView view_of(const FramePixels& picture, const FrameTruth& frame, const RoadDetector& detector) {

@@ -15,12 +15,6 @@
 namespace roadfix {
 namespace {
 
-std::int64_t big_endian(Bytes bytes) {
-  std::int64_t value = 0;
-  for (const std::uint8_t byte : bytes) value = value << 8 | byte;
-  return value;
-}
-
 std::optional<ImageHeader> png_header(Bytes bytes) {
   constexpr std::size_t kHeaderEnd = 24;  // signature, chunk length and name, width, height
   if (bytes.size() < kHeaderEnd || !is_png(bytes)) return std::nullopt;

@@ -10,10 +10,9 @@
 #include <vector>
 
 #include "core/detect/frame_image.hpp"
+#include "core/units/bytes.hpp"
 
 namespace roadfix {
-
-using Bytes = std::span<const std::uint8_t>;
 
 /// Format and size as the header says them.
 struct ImageHeader {

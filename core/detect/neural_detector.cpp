@@ -6,11 +6,12 @@
 #include <cassert>
 #include <opencv2/imgproc.hpp>
 #include <string>
-#include <vector>
+#include <utility>
 
 #include "core/detect/network_picture.hpp"
 #include "core/detect/tiling.hpp"
 #include "core/network/network.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/fnv.hpp"
@@ -18,14 +19,14 @@
 namespace roadfix {
 namespace {
 
-std::vector<unsigned char> read_model(const std::filesystem::path& model) {
-  const auto bytes = read_file(model);
+std::string read_model(const std::filesystem::path& model) {
+  auto bytes = read_file(model);
   if (!bytes) {
     throw InvalidInput("model-missing", fmt::format("{} cannot be read. Name an ONNX file with --model, or use "
                                                     "--detector tree, which needs none.",
                                                     model.string()));
   }
-  return {bytes->begin(), bytes->end()};
+  return *std::move(bytes);
 }
 
 cv::Mat mirrored(const cv::Mat& picture) {
@@ -60,16 +61,16 @@ cv::Mat upright(const cv::Mat& picture, int k) {
 NeuralRoadDetector::NeuralRoadDetector(const std::filesystem::path& model, const NeuralOptions& options)
     : options_(options) {
   assert(std::ranges::find(kOrientations, options.orientations) != kOrientations.end());
-  const auto onnx = read_model(model);
+  const std::string onnx = read_model(model);
   network_ = read_network_description(model);
-  checksum_ = roadfix::fnv1a64({reinterpret_cast<const char*>(onnx.data()), onnx.size()});
+  checksum_ = roadfix::fnv1a64(onnx);
   if (!network_.fnv1a64.empty() && network_.fnv1a64 != checksum_) {
     throw InvalidInput("model-checksum", fmt::format("{} has the checksum {}, its description says {}: they are not of "
                                                      "one export.",
                                                      model.string(), checksum_, network_.fnv1a64));
   }
   try {
-    runner_ = load_network(onnx);
+    runner_ = load_network(bytes_of(onnx));
   } catch (const cv::Exception& error) {
     throw InvalidInput("model-unreadable", fmt::format("{} is not an ONNX network that OpenCV {} runs (export with "
                                                        "opset 11): {}",

@@ -7,6 +7,7 @@
 
 #include "core/grid/resample.hpp"
 #include "core/match/correlation.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/fnv.hpp"
 
 namespace roadfix {
@@ -32,10 +33,9 @@ constexpr double kStillMargin = 0.3;  // by which it correlates better so than a
 bool shows_road(const FeatureMap& features) { return std::ranges::any_of(features.cells.cells(), is_road); }
 
 std::uint64_t digest_of(const FeatureMap& features) {
-  const auto cells = features.cells.cells();
   Fnv1a64 hash;
   hash.add(fmt::format("{} {}", features.cells.cols(), features.cell_m));
-  hash.add({reinterpret_cast<const char*>(cells.data()), cells.size()});
+  hash.add(characters_of(features.cells.cells()));
   return hash.value();
 }
 

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "core/png/png_chunk.hpp"
+#include "core/units/bytes.hpp"
 
 namespace roadfix {
 namespace {
@@ -102,7 +103,7 @@ std::vector<std::byte> encode_grey_png(std::span<const std::uint8_t> pixels, con
   rows.reserve(pixels.size() + static_cast<std::size_t>(shape.rows));
   for (std::size_t at = 0; at < pixels.size(); at += row_bytes(shape)) {
     rows.push_back(static_cast<char>(kAsItIs));
-    rows.append(reinterpret_cast<const char*>(&pixels[at]), row_bytes(shape));
+    rows.append(characters_of(pixels.subspan(at, row_bytes(shape))));
   }
   const std::string png = std::string(kPngSignature) + png_chunk("IHDR", header(shape)) +
                           png_chunk("IDAT", packed(rows)) + png_chunk("IEND", {});

@@ -1,4 +1,5 @@
 #include "core/png/png_chunk.hpp"
+#include "core/units/bytes.hpp"
 
 #include <libdeflate.h>
 
@@ -13,9 +14,7 @@ constexpr std::size_t kType = 4;
 constexpr std::size_t kAroundData = kNumber + kType + kNumber;  // length and type before it, checksum behind
 
 std::uint32_t number_at(std::string_view bytes) {
-  std::uint32_t number = 0;
-  for (const char byte : bytes.substr(0, kNumber)) number = number << 8U | static_cast<std::uint8_t>(byte);
-  return number;
+  return static_cast<std::uint32_t>(big_endian(bytes_of(bytes.substr(0, kNumber))));
 }
 
 }  // namespace

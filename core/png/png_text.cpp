@@ -3,15 +3,12 @@
 #include <cassert>
 
 #include "core/png/png_chunk.hpp"
+#include "core/units/bytes.hpp"
 
 namespace roadfix {
 namespace {
 
 constexpr std::size_t kHeaderEnd = 33;  // signature and chunk IHDR
-
-std::string_view characters(std::span<const std::uint8_t> bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
 
 std::vector<std::uint8_t> with_chunk(std::span<const std::uint8_t> png, std::string_view type, std::string_view keyword,
                                      std::string_view between, std::string_view text) {
@@ -26,7 +23,7 @@ std::vector<std::uint8_t> with_chunk(std::span<const std::uint8_t> png, std::str
 
 }  // namespace
 
-bool is_png(std::span<const std::uint8_t> bytes) { return characters(bytes).starts_with(kPngSignature); }
+bool is_png(std::span<const std::uint8_t> bytes) { return characters_of(bytes).starts_with(kPngSignature); }
 
 std::vector<std::uint8_t> with_text(std::span<const std::uint8_t> png, std::string_view keyword,
                                     std::string_view text) {
@@ -41,7 +38,7 @@ std::vector<std::uint8_t> with_utf8_text(std::span<const std::uint8_t> png, std:
 
 std::optional<std::string> text_in(std::span<const std::uint8_t> png, std::string_view keyword) {
   if (!is_png(png)) return {};
-  std::string_view rest = characters(png).substr(kPngSignature.size());
+  std::string_view rest = characters_of(png).substr(kPngSignature.size());
   const std::string start = std::string(keyword) + '\0';
   for (auto chunk = take_png_chunk(rest); chunk && chunk->type != "IDAT"; chunk = take_png_chunk(rest)) {
     if (chunk->type == "tEXt" && chunk->data.starts_with(start) && chunk->intact()) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/units/bytes.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/multipart.hpp"
@@ -23,10 +24,6 @@ void add_picture(Content& content, std::span<const std::uint8_t> bytes) {
   if (content.has_picture) throw http::given_twice("image");
   content.image = bytes;
   content.has_picture = true;
-}
-
-std::span<const std::uint8_t> bytes_of(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
 void add_json(Content& content, std::string_view text, const std::vector<std::string>& known, const Limits& limits) {

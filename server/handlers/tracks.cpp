@@ -6,6 +6,7 @@
 #include <string>
 
 #include "core/locate/tracker.hpp"
+#include "core/units/bytes.hpp"
 #include "core/units/fnv.hpp"
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
@@ -47,7 +48,7 @@ std::vector<std::string> step_query() {
 std::int64_t digest_of(const api::Content& content) {
   Fnv1a64 hash;
   hash.add(content.fields.summary(joined({api::position_fields(), {"image"}})));
-  hash.add({reinterpret_cast<const char*>(content.image.data()), content.image.size()});
+  hash.add(characters_of(content.image));
   return static_cast<std::int64_t>(hash.value());
 }
 

@@ -7,6 +7,7 @@
 #include <new>
 #include <optional>
 #include <system_error>
+#include "core/units/bytes.hpp"
 
 namespace roadfix::sqlite {
 namespace {
@@ -47,12 +48,6 @@ std::optional<Header> header_of(sqlite3_file* file) {
   Header header{};
   if (file->pMethods->xRead(file, header.data(), static_cast<int>(header.size()), 0) != SQLITE_OK) return {};
   return header;
-}
-
-std::int64_t big_endian(const Header& header, std::size_t at, std::size_t bytes) {
-  std::int64_t value = 0;
-  for (std::size_t i = 0; i < bytes; ++i) value = value << 8 | header[at + i];
-  return value;
 }
 
 /// SQLite's message, and what the operating system said where that refused to read or write.
@@ -100,15 +95,16 @@ std::int64_t Connection::missing_bytes() const {
   if (size < kHeaderSize) return kHeaderSize - size;
   const auto header = header_of(file);
   if (!header) return 0;
-  const std::int64_t page = big_endian(*header, 16, 2) == 1 ? 65536 : big_endian(*header, 16, 2);
-  return std::max<std::int64_t>(0, page * big_endian(*header, 28, 4) - size);
+  const Bytes bytes = *header;
+  const std::int64_t page = big_endian(bytes.subspan(16, 2)) == 1 ? 65536 : big_endian(bytes.subspan(16, 2));
+  return std::max<std::int64_t>(0, page * big_endian(bytes.subspan(28, 4)) - size);
 }
 
 bool Connection::in_wal_mode() const {
   sqlite3_file* const file = file_of(handle_.get());
   const auto header = file == nullptr ? std::nullopt : header_of(file);
-  constexpr std::int64_t kWal = 2;
-  return header && big_endian(*header, 19, 1) == kWal;
+  constexpr std::uint8_t kWal = 2;
+  return header && header->at(19) == kWal;
 }
 
 std::int64_t Connection::last_insert_id() const { return sqlite3_last_insert_rowid(handle_.get()); }

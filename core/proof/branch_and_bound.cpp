@@ -53,7 +53,7 @@ class BranchAndBound {
   bool scan() {
     const std::vector<BlockTile> tiles = block_scan_.tiles();
     for (std::size_t next = 0; next < tiles.size();) {
-      const std::size_t end = std::min(next + static_cast<std::size_t>(search_.threads), tiles.size());
+      const std::size_t end = std::min(next + static_cast<std::size_t>(std::max(1, search_.threads)), tiles.size());
       std::atomic<bool> complete{true};
       parallel_for(static_cast<int>(end - next), search_.threads, [&](int i) {
         const BlockScanResult found = block_scan_.scan(tiles[next + static_cast<std::size_t>(i)], deadline_);

@@ -66,5 +66,12 @@ TEST(BranchAndBound, ManyThreadsFindWhatOneFinds) {
   }
 }
 
+TEST(BranchAndBound, NoThreadsAreOne) {
+  BoundedCase given(1);
+  const BoundedResult one = search_with_bound(given.search, Deadline());
+  given.search.threads = 0;
+  EXPECT_EQ(search_with_bound(given.search, Deadline()).bound, one.bound);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -196,7 +196,7 @@ void require_own_targets(const std::filesystem::path& folder, const std::vector<
   }
 }
 
-void detect_all(const DetectOptions& options, const std::vector<std::string>& pictures, const std::string& target) {
+void detect_all(const DetectOptions& options, const Pictures& pictures, const std::string& target) {
   require_name(target);
   if (std::filesystem::exists(target) && !std::filesystem::is_directory(target)) {
     throw InvalidInput("target-not-folder",
@@ -204,27 +204,27 @@ void detect_all(const DetectOptions& options, const std::vector<std::string>& pi
                                    "the last name",
                                    target));
   }
-  const auto images = picture_files(pictures, kPictureEndings);
-  require_own_targets(target, images);
+  require_own_targets(target, pictures.files);
   std::filesystem::create_directories(target);
   const auto detector = detector_of(options);
-  const std::size_t left_out = for_each_picture(images, "detecting", true, [&](const std::filesystem::path& image) {
+  const std::size_t left_out = for_each_picture(pictures, "detecting", true, [&](const std::filesystem::path& image) {
     detect(options, {image.string(), target_in(target, image)}, *detector);
   });
-  require_none(left_out, images.size());
+  require_none(left_out, pictures.files.size());
 }
 
 void run_detect(const DetectOptions& options) {
   require_frame_for(options.frame);
-  const std::vector<std::string> pictures(options.names.begin(), options.names.end() - 1);
+  const Pictures pictures = pictures_of({options.names.begin(), options.names.end() - 1}, kPictureEndings);
   const std::string& target = options.names.back();
-  if (are_several(pictures) || std::filesystem::is_directory(target)) {
+  if (pictures.several || std::filesystem::is_directory(target)) {
     detect_all(options, pictures, target);
     return;
   }
-  require_apart({target}, {pictures.front()});
+  const std::filesystem::path& picture = pictures.files.front();
+  require_apart({target}, {picture});
   require_png_name(target);
-  detect(options, {pictures.front(), target}, *detector_of(options));
+  detect(options, {picture.string(), target}, *detector_of(options));
 }
 
 }  // namespace

@@ -61,14 +61,14 @@ Prior prior_of(const FixArguments& options) {
   return prior;
 }
 
-void print_answer(const FixArguments& options, const std::string& picture, const api::Features& input, const Fix& fix) {
-  const bool is_one_of_several = are_several(options.pictures);
-  if (options.as_json) {
+/// `picture`: which of several it is.
+void print_answer(const Fix& fix, const api::Features& input, bool as_json, const std::optional<std::string>& picture) {
+  if (as_json) {
     nlohmann::json answer = api::to_json(fix, input);
-    if (is_one_of_several) answer["file"] = picture;
-    fmt::print("{}\n", json_text(answer, is_one_of_several ? -1 : 2));
+    if (picture) answer["file"] = *picture;
+    fmt::print("{}\n", json_text(answer, picture ? -1 : 2));
   } else {
-    if (is_one_of_several) fmt::print("{}: ", picture);
+    if (picture) fmt::print("{}: ", *picture);
     print_text(fix);
   }
 }
@@ -81,9 +81,9 @@ struct Search {
   std::optional<std::chrono::milliseconds> time_limit;
 };
 
-Search search_of(const FixArguments& options) {
+Search search_of(const FixArguments& options, bool several) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // all pictures search the same map
-  const std::size_t cache_bytes = are_several(options.pictures) ? kSearchCacheBytes : 0;
+  const std::size_t cache_bytes = several ? kSearchCacheBytes : 0;
   Search search{view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit};
   search_region(search.view, search.prior, options.fix);  // before the frame, in which roads are looked for
   if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
@@ -98,24 +98,23 @@ Fix located(const Search& search, api::Features& input, OnProgress progress = {}
   return locate(search.view, input.map, search.prior, options);
 }
 
-void fix_one(const FixArguments& options) {
-  const Search search = search_of(options);
-  api::Features input = FeatureInput(options.input, search.view).read(options.pictures.front());
+void fix_one(const FixArguments& options, const std::filesystem::path& picture) {
+  const Search search = search_of(options, false);
+  api::Features input = FeatureInput(options.input, search.view).read(picture);
   Progress progress("searching", "headings");
   const auto began = std::chrono::steady_clock::now();
   const Fix fix = located(search, input, [&](std::int64_t done, std::int64_t total) {
     if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
   });
-  print_answer(options, options.pictures.front(), input, fix);
+  print_answer(fix, input, options.as_json, std::nullopt);
 }
 
 /// What was answered before the end came is in the table, whatever ended the command.
-void fix_all(const FixArguments& options) {
+void fix_all(const FixArguments& options, const Pictures& pictures) {
   if (!options.input.also.empty()) throw CLI::ExcludesError("--also", "several pictures and --csv");
-  const auto files = picture_files(options.pictures, kPictureEndings);
-  for (const auto& file : files) require_apart({options.csv}, {file});
+  for (const auto& file : pictures.files) require_apart({options.csv}, {file});
   require_writable({options.csv});
-  const Search search = search_of(options);
+  const Search search = search_of(options, pictures.several);
   FeatureInput inputs(options.input, search.view);
   std::string table = fix_columns();
   auto saved = std::chrono::steady_clock::now();
@@ -126,11 +125,11 @@ void fix_all(const FixArguments& options) {
   const bool grows = !options.csv.empty() && is_replaced(options.csv);
   std::size_t left_out = 0;
   try {
-    left_out = for_each_picture(files, "locating", options.csv.empty(), [&](const std::filesystem::path& file) {
+    left_out = for_each_picture(pictures, "locating", options.csv.empty(), [&](const std::filesystem::path& file) {
       api::Features input = inputs.read(file);
       const Fix fix = located(search, input);
       if (options.csv.empty()) {
-        print_answer(options, file, input, fix);
+        print_answer(fix, input, options.as_json, file.string());
       } else {
         table += row_of(file, fix);
         if (grows && std::chrono::steady_clock::now() - saved >= kUnsaved) save();
@@ -141,11 +140,12 @@ void fix_all(const FixArguments& options) {
     throw;
   }
   save();
-  require_none(left_out, files.size());
+  require_none(left_out, pictures.files.size());
 }
 
 void run_fix(const FixArguments& options) {
-  are_several(options.pictures) || !options.csv.empty() ? fix_all(options) : fix_one(options);
+  const Pictures pictures = pictures_of(options.pictures, kPictureEndings);
+  pictures.several || !options.csv.empty() ? fix_all(options, pictures) : fix_one(options, pictures.files.front());
 }
 
 }  // namespace

@@ -126,17 +126,13 @@ void run_frames(const FramesOptions& options) {
   const fs::path folder =
       options.csv.empty() ? fs::current_path() : fs::absolute(options.csv).lexically_normal().parent_path();
   std::vector<Frame> frames;
-  const auto files = picture_files(options.pictures, kPhotoEndings);
+  const Pictures pictures = pictures_of(options.pictures, kPhotoEndings);
+  const std::vector<fs::path>& files = pictures.files;
   for (const fs::path& file : files) require_apart({options.csv}, {file});
   const auto take = [&](const fs::path& file) {
     if (auto frame = frame_of(file, folder, options)) frames.push_back(std::move(*frame));
   };
-  std::size_t unread = 0;
-  if (are_several(options.pictures)) {
-    unread = for_each_picture(files, "reading", false, take);
-  } else {
-    take(files.front());
-  }
+  const std::size_t unread = for_each_picture(pictures, "reading", false, take);
   if (frames.empty()) {
     if (unread == files.size()) require_none(unread, files.size());
     throw InvalidInput("no-drone-pictures",

@@ -53,21 +53,18 @@ std::optional<std::string> reason_against(const fs::path& file, const std::funct
 
 }  // namespace
 
-bool are_several(const std::vector<std::string>& names) {
-  return names.size() > 1 || std::ranges::any_of(names, [](const std::string& name) { return fs::is_directory(name); });
-}
-
-std::vector<fs::path> picture_files(const std::vector<std::string>& names, std::initializer_list<const char*> endings) {
-  std::vector<fs::path> files;
+Pictures pictures_of(const std::vector<std::string>& names, std::initializer_list<const char*> endings) {
+  Pictures pictures{.files = {}, .several = names.size() > 1};
   for (const std::string& name : names) {
     if (!fs::is_directory(name)) {
-      files.emplace_back(name);
+      pictures.files.emplace_back(name);
       continue;
     }
+    pictures.several = true;
     const auto found = pictures_in(name, endings);
-    files.insert(files.end(), found.begin(), found.end());
+    pictures.files.insert(pictures.files.end(), found.begin(), found.end());
   }
-  return files;
+  return pictures;
 }
 
 void require_not_empty(const fs::path& file) {
@@ -81,8 +78,13 @@ void say_left_out(const fs::path& file, std::string_view reason) {
   fmt::print(stderr, "{} is left out: {}\n", file.string(), reason);
 }
 
-std::size_t for_each_picture(const std::vector<fs::path>& files, const char* task, bool prints,
+std::size_t for_each_picture(const Pictures& pictures, const char* task, bool prints,
                              const std::function<void(const fs::path&)>& work) {
+  const std::vector<fs::path>& files = pictures.files;
+  if (!pictures.several) {
+    work(files.front());
+    return 0;
+  }
   std::optional<Progress> progress;
   if (!prints || isatty(STDOUT_FILENO) == 0) progress.emplace(task, "pictures");
   std::size_t left_out = 0;

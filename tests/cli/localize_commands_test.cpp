@@ -127,6 +127,15 @@ TEST_F(FixOfSeveralPictures, IsALineOfJsonForEachThatCanBeRead) {
   EXPECT_THAT(result.err, HasSubstr("locating 100.0 %  3/3"));
 }
 
+TEST_F(LocalizeCommands, FixOfASinglePictureTellsWhyItCannotBeUsedForATableToo) {
+  std::ofstream(folder / "empty.png").flush();
+  const ProgramResult result = roadfix("fix " + map.string() + " " + (folder / "empty.png").string() +
+                                       " --cell 2 --csv " + (folder / "fixes.csv").string());
+  EXPECT_EQ(result.code, 1);
+  EXPECT_THAT(result.err, HasSubstr("[image-damaged]"));
+  EXPECT_THAT(result.err, Not(HasSubstr("left out")));
+}
+
 TEST_F(FixOfSeveralPictures, IsARowOfATableForEachWithAPlaceOnlyWhereThereIsAFix) {
   std::filesystem::remove(flight / "c.png");
   const std::filesystem::path table = folder / "fixes.csv";

@@ -36,7 +36,7 @@ bool says(const onnx::NodeProto& node, std::string_view name, std::string_view t
   return found != nullptr && found->s() == text;
 }
 
-/// Numbers of cells, from `min` on; `otherwise` where the node does not tell.
+/// The attribute's counts of cells, each at least `min`; all `otherwise` where the node does not have it.
 template <std::size_t kSize>
 std::array<int, kSize> cells(const onnx::NodeProto& node, std::string_view name, int min, int otherwise) {
   constexpr std::int64_t kMax = 64;
@@ -90,13 +90,13 @@ class Reader {
   explicit Reader(const onnx::GraphProto& graph) : graph_(graph) {
     for (const onnx::TensorProto& tensor : graph.initializer()) constants_[tensor.name()] = &tensor;
     for (const onnx::ValueInfoProto& input : graph.input()) {
-      if (!constants_.contains(input.name())) give(input.name(), Layer::kPicture);
+      if (!constants_.contains(input.name())) set_layer(input.name(), Layer::kPicture);
     }
-    require(layers_by_name_.size() == 1 && graph.output_size() == 1);
+    require(layer_of_.size() == 1 && graph.output_size() == 1);
     for (const onnx::NodeProto& node : graph.node()) {
-      for (const std::string& input : node.input()) ++users_[input];
+      for (const std::string& input : node.input()) ++consumers_[input];
     }
-    ++users_[graph.output(0).name()];
+    ++consumers_[graph.output(0).name()];
   }
 
   std::vector<Layer> read() {
@@ -111,11 +111,11 @@ class Reader {
     require(node.domain().empty() && node.output_size() == 1);
     if (kind == "Constant") return read_constant(node);
     if (kind == "Conv") return read_convolution(node);
-    if (kind == "Relu") return read_rectifier(node);
+    if (kind == "Relu") return read_relu(node);
     if (kind == "Add") return read_sum(node);
-    if (kind == "Concat") return read_channels(node);
+    if (kind == "Concat") return read_concat(node);
     require(kind == "Resize");
-    read_twice(node);
+    read_upsampling(node);
   }
 
   void read_constant(const onnx::NodeProto& node) {
@@ -132,38 +132,38 @@ class Reader {
     add({Layer::Kind::kConvolution, {from}, read.outputs, false, std::move(read)}, node);
   }
 
-  /// Belongs to the layer that it takes, whose output nobody else does.
-  void read_rectifier(const onnx::NodeProto& node) {
+  /// Becomes part of the layer that it follows, which must have no other consumer.
+  void read_relu(const onnx::NodeProto& node) {
     require(node.input_size() == 1);
     const int of = layer(node.input(0));
-    require(of != Layer::kPicture && users_[node.input(0)] == 1);
-    layers_[static_cast<std::size_t>(of)].rectified = true;
-    give(node.output(0), of);
+    require(of != Layer::kPicture && consumers_[node.input(0)] == 1);
+    layers_[static_cast<std::size_t>(of)].relu = true;
+    set_layer(node.output(0), of);
   }
 
-  /// Part of the convolution before it, whose output nobody else takes; but for a sum of that and its own input, which
-  /// would be overwritten while it is read.
+  /// Becomes part of the convolution just before it if that has no other consumer. A convolution's own input is not
+  /// added so: it would be overwritten while it is still read.
   void read_sum(const onnx::NodeProto& node) {
     require(node.input_size() == 2);
     std::array<int, 2> from{layer(node.input(0)), layer(node.input(1))};
     require(channels(from[0]) == channels(from[1]) && from[0] != from[1]);
     if (from[0] > from[1]) std::swap(from[0], from[1]);
     const bool after_convolution = from[0] != Layer::kPicture && from[1] == last() &&
-                                   layers_.back().kind == Layer::Kind::kConvolution && !layers_.back().rectified &&
-                                   layers_.back().inputs.size() == 1 && users_of_last() == 1 &&
+                                   layers_.back().kind == Layer::Kind::kConvolution && !layers_.back().relu &&
+                                   layers_.back().inputs.size() == 1 && consumers_of_last() == 1 &&
                                    layers_.back().inputs.front() != from[0];
     if (after_convolution) {
       layers_.back().inputs.push_back(from[0]);
-      give(node.output(0), last());
+      set_layer(node.output(0), last());
     } else {
       add({Layer::Kind::kSum, {from[0], from[1]}, channels(from[0])}, node);
     }
   }
 
-  void read_channels(const onnx::NodeProto& node) {
+  void read_concat(const onnx::NodeProto& node) {
     const onnx::AttributeProto* axis = attribute(node, "axis");
     require(axis != nullptr && axis->i() == 1 && node.input_size() >= 2);
-    Layer made{.kind = Layer::Kind::kChannels};
+    Layer made{.kind = Layer::Kind::kConcat};
     for (const std::string& input : node.input()) {
       made.inputs.push_back(layer(input));
       made.channels += channels(made.inputs.back());
@@ -172,27 +172,27 @@ class Reader {
     add(std::move(made), node);
   }
 
-  void read_twice(const onnx::NodeProto& node) {
+  void read_upsampling(const onnx::NodeProto& node) {
     require(node.input_size() == 3 && says(node, "mode", "nearest") && says(node, "nearest_mode", "floor") &&
             says(node, "coordinate_transformation_mode", "asymmetric"));
     require(numbers(constant(node.input(2))) == std::vector<float>{1, 1, 2, 2});
     const int from = layer(node.input(0));
-    add({Layer::Kind::kTwice, {from}, channels(from)}, node);
+    add({Layer::Kind::kUpsample, {from}, channels(from)}, node);
   }
 
   void add(Layer made, const onnx::NodeProto& node) {
     layers_.push_back(std::move(made));
-    give(node.output(0), last());
+    set_layer(node.output(0), last());
     name_of_last_ = node.output(0);
   }
 
-  void give(const std::string& name, int layer) { require(layers_by_name_.emplace(name, layer).second); }
-  int users_of_last() { return users_[name_of_last_]; }
+  void set_layer(const std::string& name, int layer) { require(layer_of_.emplace(name, layer).second); }
+  int consumers_of_last() { return consumers_[name_of_last_]; }
   int last() const { return static_cast<int>(layers_.size()) - 1; }
 
   int layer(const std::string& name) const {
-    const auto found = layers_by_name_.find(name);
-    require(found != layers_by_name_.end());
+    const auto found = layer_of_.find(name);
+    require(found != layer_of_.end());
     return found->second;
   }
 
@@ -208,10 +208,10 @@ class Reader {
 
   const onnx::GraphProto& graph_;
   std::map<std::string, const onnx::TensorProto*> constants_;
-  std::map<std::string, int> layers_by_name_;  ///< those that give what is called so
-  std::map<std::string, int> users_;           ///< nodes that take it
+  std::map<std::string, int> layer_of_;   ///< which layer computes the value of this name
+  std::map<std::string, int> consumers_;  ///< how many nodes take the value of this name
   std::vector<Layer> layers_;
-  std::string name_of_last_;  ///< what the last layer's first node gives
+  std::string name_of_last_;  ///< output of the node that the last layer began with
 };
 
 }  // namespace
@@ -243,7 +243,7 @@ std::optional<std::array<int, 2>> output_sides(std::span<const Layer> layers, st
   for (const Layer& layer : layers) {
     std::array<int, 2> sides = given(layer.inputs.front());
     if (layer.kind == Layer::Kind::kConvolution) sides = sides_after(layer.convolution, sides);
-    if (layer.kind == Layer::Kind::kTwice) sides = {2 * sides[0], 2 * sides[1]};
+    if (layer.kind == Layer::Kind::kUpsample) sides = {2 * sides[0], 2 * sides[1]};
     if (std::ranges::min(sides) < 1 || std::ranges::max(sides) > kMaxSide) return std::nullopt;
     for (const int other : std::span(layer.inputs).subspan(1)) {
       if (given(other) != sides) return std::nullopt;

@@ -11,8 +11,8 @@
 
 namespace roadfix {
 
-/// Each caller borrows a plan. Where none for its size is idle, one is made in place of that which has been idle
-/// longest: there are never more of them than callers at the same time.
+/// Each caller borrows a plan. If none for its size is idle, a new one replaces the one idle for longest, so that there
+/// are never more plans than there were simultaneous callers.
 class OneDnnNetwork : public Network {
  public:
   /// As read_layers() gives them.
@@ -27,7 +27,7 @@ class OneDnnNetwork : public Network {
   std::vector<Layer> layers_;
   OneDnnConstants constants_;
   std::mutex mutex_;
-  std::list<OneDnnPlan> idle_;  ///< last used first
+  std::list<OneDnnPlan> idle_;  ///< most recently used first
 };
 
 }  // namespace roadfix

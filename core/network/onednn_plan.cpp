@@ -21,7 +21,7 @@ const dnnl::engine& processor() {
   return engine;
 }
 
-/// The caller has its threads already, and those of OpenMP wait for each other by turning the processor.
+/// The callers are threads already, and OpenMP's would wait for each other in busy loops.
 void stay_in_this_thread() { omp_set_num_threads(1); }
 
 memory::desc in_any_layout(const Dims& dims) { return {dims, kFloat, memory::format_tag::any}; }
@@ -39,7 +39,7 @@ Dims dims_after(const Convolution& by, const Dims& dims) {
 
 using ConvolutionPrimitive = dnnl::convolution_forward::primitive_desc;
 
-/// By Winograd's algorithm, with fewer products, where oneDNN has it for such a convolution and processor.
+/// Winograd's algorithm, which takes fewer products, where oneDNN has it for this convolution and processor.
 ConvolutionPrimitive convolution_primitive(const Convolution& by, const Dims& from, const dnnl::primitive_attr& how) {
   const Dims gaps{by.dilation[0] - 1, by.dilation[1] - 1};
   const auto of = [&](dnnl::algorithm algorithm, bool may_fail) {
@@ -55,10 +55,10 @@ ConvolutionPrimitive convolution_primitive(const Convolution& by, const Dims& fr
 
 }  // namespace
 
-/// Makes the steps of one layer after the other. A buffer serves again once the last layer that reads it is made.
-class OneDnnPlan::Maker {
+/// Adds the steps of one layer after the other. A buffer is used again once its last reader has been added.
+class OneDnnPlan::Builder {
  public:
-  Maker(OneDnnPlan& plan, std::span<const Layer> layers, OneDnnConstants& constants)
+  Builder(OneDnnPlan& plan, std::span<const Layer> layers, OneDnnConstants& constants)
       : plan_(plan), layers_(layers), constants_(constants), last_reader_(layers.size()) {
     for (std::size_t i = 0; i < layers.size(); ++i) {
       last_reader_[i] = layers.size();
@@ -68,63 +68,64 @@ class OneDnnPlan::Maker {
     }
   }
 
-  void make() {
-    plan_.picture_ = held({{1, 3, plan_.size_.height, plan_.size_.width}, kFloat, memory::format_tag::nhwc}).memory;
+  void build() {
+    plan_.picture_ =
+        allocated({{1, 3, plan_.size_.height, plan_.size_.width}, kFloat, memory::format_tag::nhwc}).memory;
     for (const Layer& layer : layers_) {
-      made_.push_back(made(layer));
-      release();
+      outputs_.push_back(added_layer(layer));
+      release_buffers();
     }
-    const memory& last = made_.back().memory;
-    plan_.result_ = laid_out(last, {last.get_desc().dims(), kFloat, memory::format_tag::nchw});
+    const memory& last = outputs_.back().memory;
+    plan_.result_ = reordered(last, {last.get_desc().dims(), kFloat, memory::format_tag::nchw});
     const memory scratch(bytes(scratch_bytes_), processor());
     for (Step& step : plan_.steps_) step.arguments.emplace(DNNL_ARG_SCRATCHPAD, scratch);
   }
 
  private:
-  struct Held {
+  struct Value {
     dnnl::memory memory;
     std::size_t buffer = 0;
   };
 
-  Held made(const Layer& layer) {
+  Value added_layer(const Layer& layer) {
     switch (layer.kind) {
       case Layer::Kind::kConvolution:
         return convolution(layer);
       case Layer::Kind::kSum:
         return sum(layer);
-      case Layer::Kind::kTwice:
-        return twice(layer);
-      case Layer::Kind::kChannels:
+      case Layer::Kind::kUpsample:
+        return upsampling(layer);
+      case Layer::Kind::kConcat:
         break;
     }
-    return channels(layer);
+    return concatenation(layer);
   }
 
-  Held convolution(const Layer& layer) {
+  Value convolution(const Layer& layer) {
     const Convolution& by = layer.convolution;
     const memory& from = input(layer, 0);
     const bool adds = layer.inputs.size() > 1;
     const ConvolutionPrimitive found = convolution_primitive(by, from.get_desc().dims(), attributes(layer, adds));
     const Dims weights{by.outputs, by.inputs, by.kernel[0], by.kernel[1]};
     std::unordered_map<int, memory> arguments{
-        {DNNL_ARG_SRC, laid_out(from, found.src_desc())},
+        {DNNL_ARG_SRC, reordered(from, found.src_desc())},
         {DNNL_ARG_WEIGHTS,
-         constants_.laid_out(by.weights, {weights, kFloat, memory::format_tag::oihw}, found.weights_desc())},
+         constants_.reordered(by.weights, {weights, kFloat, memory::format_tag::oihw}, found.weights_desc())},
         {DNNL_ARG_BIAS,
-         constants_.laid_out(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
-    Held to = adds ? to_be_added_to(layer.inputs[1], found.dst_desc()) : held(found.dst_desc());
+         constants_.reordered(by.bias, {{by.outputs}, kFloat, memory::format_tag::x}, found.bias_desc())}};
+    Value to = adds ? accumulator(layer.inputs[1], found.dst_desc()) : allocated(found.dst_desc());
     return added<dnnl::convolution_forward>(found, std::move(arguments), std::move(to));
   }
 
-  Held sum(const Layer& layer) {
+  Value sum(const Layer& layer) {
     const memory& first = input(layer, 0);
-    const memory second = laid_out(input(layer, 1), first.get_desc());
+    const memory second = reordered(input(layer, 1), first.get_desc());
     const dnnl::binary::desc asked(dnnl::algorithm::binary_add, first.get_desc(), second.get_desc(), first.get_desc());
     const dnnl::binary::primitive_desc found(asked, attributes(layer), processor());
-    return added<dnnl::binary>(found, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}}, held(found.dst_desc()));
+    return added<dnnl::binary>(found, {{DNNL_ARG_SRC_0, first}, {DNNL_ARG_SRC_1, second}}, allocated(found.dst_desc()));
   }
 
-  Held twice(const Layer& layer) {
+  Value upsampling(const Layer& layer) {
     const memory& from = input(layer, 0);
     Dims dims = from.get_desc().dims();
     dims[2] *= 2;
@@ -132,10 +133,10 @@ class OneDnnPlan::Maker {
     const dnnl::resampling_forward::desc asked(dnnl::prop_kind::forward_inference, dnnl::algorithm::resampling_nearest,
                                                from.get_desc(), in_any_layout(dims));
     const dnnl::resampling_forward::primitive_desc found(asked, attributes(layer), processor());
-    return added<dnnl::resampling_forward>(found, {{DNNL_ARG_SRC, from}}, held(found.dst_desc()));
+    return added<dnnl::resampling_forward>(found, {{DNNL_ARG_SRC, from}}, allocated(found.dst_desc()));
   }
 
-  Held channels(const Layer& layer) {
+  Value concatenation(const Layer& layer) {
     std::vector<memory::desc> parts;
     std::unordered_map<int, memory> arguments;
     for (std::size_t i = 0; i < layer.inputs.size(); ++i) {
@@ -143,13 +144,13 @@ class OneDnnPlan::Maker {
       arguments.emplace(DNNL_ARG_MULTIPLE_SRC + static_cast<int>(i), input(layer, i));
     }
     const dnnl::concat::primitive_desc found(1, parts, processor(), attributes(layer));
-    return added<dnnl::concat>(found, std::move(arguments), held(found.dst_desc()));
+    return added<dnnl::concat>(found, std::move(arguments), allocated(found.dst_desc()));
   }
 
   static dnnl::primitive_attr attributes(const Layer& layer, bool adds = false) {
     dnnl::post_ops after;
     if (adds) after.append_sum();
-    if (layer.rectified) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
+    if (layer.relu) after.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, 0.0F, 0.0F);
     dnnl::primitive_attr result;
     result.set_scratchpad_mode(dnnl::scratchpad_mode::user);
     result.set_post_ops(after);
@@ -158,50 +159,50 @@ class OneDnnPlan::Maker {
 
   const memory& input(const Layer& layer, std::size_t index) const {
     const int from = layer.inputs[index];
-    return from == Layer::kPicture ? plan_.picture_ : made_[static_cast<std::size_t>(from)].memory;
+    return from == Layer::kPicture ? plan_.picture_ : outputs_[static_cast<std::size_t>(from)].memory;
   }
 
   template <typename Primitive, typename Description>
-  Held added(const Description& found, std::unordered_map<int, memory> arguments, Held to) {
+  Value added(const Description& found, std::unordered_map<int, memory> arguments, Value to) {
     scratch_bytes_ = std::max(scratch_bytes_, found.scratchpad_desc().get_size());
     arguments.emplace(DNNL_ARG_DST, to.memory);
     plan_.steps_.push_back({Primitive(found), std::move(arguments)});
     return to;
   }
 
-  /// The same values in another layout; passing, as all that is made for one step only.
-  memory laid_out(const memory& from, const memory::desc& layout) {
+  /// The same values in another layout, for the next step only.
+  memory reordered(const memory& from, const memory::desc& layout) {
     if (from.get_desc() == layout) return from;
-    Held to = held(layout);
-    passing_.push_back(to.buffer);
+    Value to = allocated(layout);
+    temporaries_.push_back(to.buffer);
     return copied(from, std::move(to)).memory;
   }
 
-  /// What a layer gave, in this layout and to be overwritten: itself, where this is the last one to read it.
-  Held to_be_added_to(int layer, const memory::desc& layout) {
-    const Held& from = made_[static_cast<std::size_t>(layer)];
-    if (from.memory.get_desc() == layout && last_reader_[static_cast<std::size_t>(layer)] == made_.size()) {
+  /// A layer's output in this layout, which the new layer may overwrite: in place if nobody else will read it.
+  Value accumulator(int layer, const memory::desc& layout) {
+    const Value& from = outputs_[static_cast<std::size_t>(layer)];
+    if (from.memory.get_desc() == layout && last_reader_[static_cast<std::size_t>(layer)] == outputs_.size()) {
       last_reader_[static_cast<std::size_t>(layer)] = layers_.size();  // its buffer is the new layer's from now on
       return from;
     }
-    return copied(from.memory, held(layout));
+    return copied(from.memory, allocated(layout));
   }
 
-  Held copied(const memory& from, Held to) {
+  Value copied(const memory& from, Value to) {
     const dnnl::reorder::primitive_desc found(processor(), from.get_desc(), processor(), to.memory.get_desc(),
                                               attributes({}));
     return added<dnnl::reorder>(found, {{DNNL_ARG_FROM, from}}, std::move(to));
   }
 
-  /// In the smallest free buffer that has the room, or a new one.
-  Held held(const memory::desc& desc) {
+  /// In the smallest free buffer that is large enough, or in a new one.
+  Value allocated(const memory::desc& desc) {
     const auto size = [&](std::size_t buffer) { return plan_.buffers_[buffer].get_desc().get_size(); };
     std::optional<std::size_t> best;
-    for (const std::size_t buffer : free_) {
+    for (const std::size_t buffer : free_buffers_) {
       if (size(buffer) >= desc.get_size() && (!best || size(buffer) < size(*best))) best = buffer;
     }
     if (best) {
-      std::erase(free_, *best);
+      std::erase(free_buffers_, *best);
     } else {
       best = plan_.buffers_.size();
       plan_.buffers_.emplace_back(bytes(desc.get_size()), processor());
@@ -209,26 +210,26 @@ class OneDnnPlan::Maker {
     return {memory(desc, processor(), plan_.buffers_[*best].get_data_handle()), *best};
   }
 
-  void release() {
-    for (std::size_t i = 0; i < made_.size(); ++i) {
-      if (last_reader_[i] == made_.size() - 1) free_.push_back(made_[i].buffer);
+  void release_buffers() {
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      if (last_reader_[i] == outputs_.size() - 1) free_buffers_.push_back(outputs_[i].buffer);
     }
-    free_.insert(free_.end(), passing_.begin(), passing_.end());
-    passing_.clear();
+    free_buffers_.insert(free_buffers_.end(), temporaries_.begin(), temporaries_.end());
+    temporaries_.clear();
   }
 
   OneDnnPlan& plan_;
   std::span<const Layer> layers_;
   OneDnnConstants& constants_;
-  std::vector<std::size_t> last_reader_;  ///< of each layer: a layer, or their number
-  std::vector<Held> made_;                ///< by each layer so far
-  std::vector<std::size_t> free_;         ///< buffers
-  std::vector<std::size_t> passing_;      ///< buffers
+  std::vector<std::size_t> last_reader_;   ///< of each layer: the index of a layer, or their number if there is none
+  std::vector<Value> outputs_;             ///< of each layer so far
+  std::vector<std::size_t> free_buffers_;  ///< indices
+  std::vector<std::size_t> temporaries_;   ///< indices of buffers that are free after the layer being added
   std::size_t scratch_bytes_ = 1;
 };
 
-memory OneDnnConstants::laid_out(const std::vector<float>& values, const memory::desc& given,
-                                 const memory::desc& layout) {
+memory OneDnnConstants::reordered(const std::vector<float>& values, const memory::desc& given,
+                                  const memory::desc& layout) {
   const std::scoped_lock lock(mutex_);
   const auto same = [&](const Constant& known) {
     return known.values == values.data() && known.memory.get_desc() == layout;
@@ -246,7 +247,7 @@ memory OneDnnConstants::laid_out(const std::vector<float>& values, const memory:
 OneDnnPlan::OneDnnPlan(std::span<const Layer> layers, cv::Size size, OneDnnConstants& constants)
     : size_(size), stream_(processor()) {
   stay_in_this_thread();
-  Maker(*this, layers, constants).make();
+  Builder(*this, layers, constants).build();
 }
 
 cv::Mat OneDnnPlan::run(const cv::Mat& picture) {

@@ -1,4 +1,4 @@
-// A network made ready by oneDNN for pictures of one size.
+// A network added_layer ready by oneDNN for pictures of one size.
 #pragma once
 
 #include <dnnl.hpp>
@@ -12,12 +12,12 @@
 
 namespace roadfix {
 
-/// Weights in the layouts that plans of a network want them in. Thread-safe.
+/// The weights of a network in the layouts that its plans need, each converted once. Thread-safe.
 class OneDnnConstants {
  public:
   /// `values` outlive this.
-  dnnl::memory laid_out(const std::vector<float>& values, const dnnl::memory::desc& given,
-                        const dnnl::memory::desc& layout);
+  dnnl::memory reordered(const std::vector<float>& values, const dnnl::memory::desc& given,
+                         const dnnl::memory::desc& layout);
 
  private:
   struct Constant {
@@ -39,7 +39,7 @@ class OneDnnPlan {
   cv::Mat run(const cv::Mat& picture);
 
  private:
-  class Maker;
+  class Builder;
   struct Step {
     dnnl::primitive primitive;
     std::unordered_map<int, dnnl::memory> arguments;

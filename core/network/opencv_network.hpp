@@ -10,8 +10,8 @@
 
 namespace roadfix {
 
-/// cv::dnn::Net keeps its intermediate results in itself: each caller borrows one, and a new one is made when all are
-/// lent. There are never more of them than callers at the same time.
+/// cv::dnn::Net holds its intermediate results: each caller borrows one, and a new one is made when all are in use, so
+/// that there are never more than there were simultaneous callers.
 class OpenCvNetwork : public Network {
  public:
   /// cv::Exception where it is no ONNX file that OpenCV knows.

@@ -33,22 +33,22 @@ std::vector<unsigned char> road_network(unsigned seed) {
   OnnxFile file(seed);
   const auto residual = [&](const std::string& of, int channels, int dilation) {
     const std::string first =
-        file.rectified(file.convolution(of, {.inputs = channels, .outputs = channels, .dilation = dilation}));
-    return file.rectified(file.sum(of, file.convolution(first, {.inputs = channels, .outputs = channels})));
+        file.relu(file.convolution(of, {.inputs = channels, .outputs = channels, .dilation = dilation}));
+    return file.relu(file.sum(of, file.convolution(first, {.inputs = channels, .outputs = channels})));
   };
   const auto strips = [&](const std::string& of, int channels) {
     const std::string few = file.convolution(of, {.inputs = channels, .outputs = 4, .kernel = {1, 1}});
     const std::string along = file.convolution(few, {.inputs = 4, .outputs = 5, .kernel = {1, 9}});
-    const std::string across = file.rectified(file.convolution(few, {.inputs = 4, .outputs = 3, .kernel = {9, 1}}));
-    const std::string both = file.channels({along, across});
-    return file.sum(of, file.rectified(file.convolution(both, {.inputs = 8, .outputs = channels, .kernel = {1, 1}})));
+    const std::string across = file.relu(file.convolution(few, {.inputs = 4, .outputs = 3, .kernel = {9, 1}}));
+    const std::string both = file.concat({along, across});
+    return file.sum(of, file.relu(file.convolution(both, {.inputs = 8, .outputs = channels, .kernel = {1, 1}})));
   };
   const std::string fine = residual(
-      file.rectified(file.convolution("picture", {.inputs = 3, .outputs = 8, .kernel = {5, 5}, .stride = 2})), 8, 1);
+      file.relu(file.convolution("picture", {.inputs = 3, .outputs = 8, .kernel = {5, 5}, .stride = 2})), 8, 1);
   const std::string coarse =
-      strips(residual(file.rectified(file.convolution(fine, {.inputs = 8, .outputs = 20, .stride = 2})), 20, 2), 20);
+      strips(residual(file.relu(file.convolution(fine, {.inputs = 8, .outputs = 20, .stride = 2})), 20, 2), 20);
   const std::string lifted =
-      file.twice(file.rectified(file.convolution(coarse, {.inputs = 20, .outputs = 8, .kernel = {1, 1}})));
+      file.upsampled(file.relu(file.convolution(coarse, {.inputs = 20, .outputs = 8, .kernel = {1, 1}})));
   return file.bytes(
       file.convolution(residual(file.sum(fine, lifted), 8, 1), {.inputs = 8, .outputs = 1, .kernel = {1, 1}}));
 }
@@ -146,7 +146,7 @@ TEST(NetworkDeathTest, OpenCvRunsThemWhereTheSystemRefusesToRunWhatIsWritten) {
 TEST(Network, RefusesSizesThatItsLayersDoNotFit) {
   OnnxFile file(4);
   const std::string half = file.convolution("picture", {.inputs = 3, .outputs = 2, .stride = 2});
-  const std::string back = file.twice(file.convolution(half, {.inputs = 2, .outputs = 2, .stride = 2}));
+  const std::string back = file.upsampled(file.convolution(half, {.inputs = 2, .outputs = 2, .stride = 2}));
   const auto onnx = file.bytes(file.convolution(file.sum(half, back), {.inputs = 2, .outputs = 1}));
   OneDnnNetwork network(read_layers(onnx).value());
   EXPECT_EQ(network.output_size({16, 8}), cv::Size(8, 4));

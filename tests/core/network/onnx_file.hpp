@@ -28,7 +28,7 @@ class OnnxFile {
     int stride = 1;
     int dilation = 1;
   };
-  /// As wide as what it is of, over the stride. Each returns the name of what it gives.
+  /// Padded so that only the stride makes its output smaller. Each of these returns the name of its output.
   std::string convolution(const std::string& of, const Shape& shape) {
     onnx::NodeProto& node = this->node(
         "Conv", {of, tensor({shape.outputs, shape.inputs, shape.kernel[0], shape.kernel[1]}), tensor({shape.outputs})});
@@ -40,9 +40,9 @@ class OnnxFile {
     add(node, "pads", {down, right, down, right});
     return node.output(0);
   }
-  std::string rectified(const std::string& of) { return node("Relu", {of}).output(0); }
+  std::string relu(const std::string& of) { return node("Relu", {of}).output(0); }
   std::string sum(const std::string& a, const std::string& b) { return node("Add", {a, b}).output(0); }
-  std::string channels(const std::vector<std::string>& of) {
+  std::string concat(const std::vector<std::string>& of) {
     onnx::NodeProto& node = this->node("Concat", of);
     onnx::AttributeProto& axis = *node.add_attribute();
     axis.set_name("axis");
@@ -50,7 +50,7 @@ class OnnxFile {
     axis.set_i(1);
     return node.output(0);
   }
-  std::string twice(const std::string& of) {
+  std::string upsampled(const std::string& of) {
     const std::string none = constant({});
     onnx::NodeProto& node = this->node("Resize", {of, none, constant({1, 1, 2, 2})});
     add_text(node, "mode", "nearest");
@@ -68,7 +68,7 @@ class OnnxFile {
   }
 
   onnx::GraphProto& graph() { return *model_.mutable_graph(); }
-  /// The file, with what is called so as output.
+  /// The file, with the value of this name as its output.
   std::vector<unsigned char> bytes(const std::string& output) {
     graph().clear_output();
     graph().add_output()->set_name(output);

@@ -42,7 +42,7 @@ GroundAround::GroundAround(const Level& level, GroundUse use, const Deadline& de
   if (!windows.empty()) {
     const GridGeometry all = std::accumulate(windows.begin() + 1, windows.end(), windows.front(), joined);
     if (cells_of(all) <= apart) {
-      // Three in four headings need no footprint of their own then.
+      // Three of four headings need no footprint of their own then.
       const bool in_quarters = level.bins.count() % 4 == 0;
       rotated = in_quarters && worth_rotating(all, level.reach(level.scales.reach()), 0.75 * use.headings);
       windows.assign(1, all);

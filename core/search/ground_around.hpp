@@ -1,4 +1,4 @@
-// The map below poses: one plane for all where they lie so close together that it is no larger than one for each.
+// The map below poses: one plane for all of them if that is no larger than one for each together.
 #pragma once
 
 #include <cstddef>
@@ -13,26 +13,27 @@
 
 namespace roadfix {
 
-/// Wide enough for the footprint at a pose, at the next larger scale too, and at those up to `cells` away.
+/// Wide enough for the footprint at the pose and up to `cells` away, and at the next larger scale.
 GridGeometry window_around(const Level& level, const LatticePose& pose, int cells);
 
-/// The places up to `reach` steps of so many cells away along either axis, row by row.
+/// The (2 reach + 1)^2 places up to `reach` steps away along either axis, row by row; a step is `step` cells.
 std::vector<PlaneCell> places_around(PlaneCell place, int reach, int step = 1);
 
-/// What ground around poses will be matched with: footprints up to so many cells away, turned to so many headings.
+/// What the ground will be used for.
 struct GroundUse {
-  int cells = 0;
-  int headings = 0;
+  int cells = 0;     ///< footprints are up to so many cells away from the poses
+  int headings = 0;  ///< how many there are in all
 };
 
 class GroundAround {
  public:
-  /// The ground of the footprint at each pose, at the next larger scale too. Where it is turned to many headings, those
-  /// a quarter turn apart share one. `complete()` is false, and the rest must not be used, if time was over before.
+  /// Reads the ground of the footprint at each pose, also at the next larger scale. For many headings it is kept in
+  /// four orientations, so that headings a quarter turn apart share a footprint. If time runs out, complete() is false
+  /// and nothing else may be called.
   GroundAround(const Level& level, GroundUse use, const Deadline& deadline, const std::vector<LatticePose>& poses);
 
   bool complete() const { return complete_; }
-  /// Whether match() takes quarters beyond 0.
+  /// Whether match() takes quarters other than 0.
   bool rotated() const { return shared() && planes_.front().quarters.rotated(); }
   /// The sums at cells of the level, each around one of the poses, for a footprint turned by so many quarters to the
   /// right. Cells around one pose follow each other.

@@ -1,4 +1,4 @@
-// From poses of the finest level to modes: the peak within the cell, and one mode for each peak.
+// From poses of the finest level to modes: one for each peak, located within the cell.
 #pragma once
 
 #include <cstddef>
@@ -15,11 +15,11 @@ class ModeFinder {
   ModeFinder(const Level& finest, const ScoreBackground& background, const Deadline& deadline)
       : finest_(finest), bins_(finest.bins.halved()), background_(background), deadline_(deadline) {}
 
-  /// The peak that a pose is a flank of, up to three steps away.
+  /// The peak that the pose is a flank of, at most three moves uphill away.
   SearchMode at(LatticePose pose) const;
-  /// The first `count` peaks of poses that are best first; best first. At the deadline it ends after the first.
+  /// The first `count` peaks of `poses` (best first); best first. At the deadline it ends, but not before it has one.
   std::vector<SearchMode> first_of(const std::vector<LatticePose>& poses, std::size_t count);
-  /// Whether one lies among the scores that tell the other's shape.
+  /// Whether one lies within the window of scores that give the other's shape.
   bool on_one_peak(const SearchMode& a, const SearchMode& b) const;
   /// Whether no first_of() was ended by the deadline.
   bool in_time() const { return in_time_; }

@@ -1,5 +1,5 @@
-// Where a feature map fits once more a little beside a place: a map that holds each street twice, or a road along which
-// the frame slides from one junction to the next.
+// A second peak close to a place: on a map that shows each street twice, or along a road where the frame fits at one
+// junction and at the next.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace roadfix {
 
-/// The best other peak of the scores up to `apart_m` from a place, at its heading and scale, in steps of less than a
-/// road is wide. nullopt where scores only fall.
+/// The best other peak of the scores within `apart_m` of the place, at its heading and scale, in steps smaller than
+/// roads are wide. nullopt if there is none.
 std::optional<LatticePose> nearby_peak(const Level& level, const LatticePose& place, double apart_m);
 
 }  // namespace roadfix

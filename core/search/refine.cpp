@@ -44,7 +44,7 @@ CandidatesOf by_scale_and_bin(const Level& level, int bins, const std::vector<La
   return result;
 }
 
-/// Those of a scale whose bins lie quarter turns apart together, where the ground is there for all four.
+/// Tasks by scale and, if the ground is kept in all four orientations, by bins that lie quarter turns apart.
 std::vector<RefineFamily> families_of(const Level& level, const CandidatesOf& asked, bool by_quarters,
                                       const std::vector<LatticePose>& poses, std::map<int, LevelFeatures>& at_scale) {
   const int apart = by_quarters ? level.bins.count() / 4 : level.bins.count();
@@ -69,7 +69,7 @@ struct Neighbour {
   LatticeIndex cell;
 };
 
-/// Looks around what was found best, at cells that are farther than `seen` from where its candidate was.
+/// The cells around the best one of each candidate, without those within `seen` of where the candidate began.
 std::vector<Neighbour> neighbours_beyond(int seen, const RefineTask& task, const std::vector<LatticePose>& poses) {
   std::vector<Neighbour> neighbours;
   for (std::size_t member = 0; member < task.best.size(); ++member) {
@@ -104,8 +104,8 @@ void score_at(std::span<const Neighbour> neighbours, const GroundAround& ground,
   }
 }
 
-/// Up the score from where the candidates are. A peak is hardly narrower than the step, so that this ends on the best
-/// of all poses within reach but for a few of them, at half the cost.
+/// Goes uphill from each candidate. Since peaks are hardly narrower than a step, this mostly ends on the best of all
+/// poses within reach, at half the cost.
 void climb(RefineFamily& family, int cells, const GroundAround& ground, const std::vector<LatticePose>& poses) {
   const PackedFootprint footprint = footprint_at(family.features->rotator, family.heading);
   for (RefineTask& task : family.tasks) {
@@ -117,7 +117,7 @@ void climb(RefineFamily& family, int cells, const GroundAround& ground, const st
   }
 }
 
-/// What the tasks found best of each candidate.
+/// The best pose that any task found for each candidate.
 std::vector<LatticePose> best_of(const std::vector<RefineFamily>& families, std::vector<LatticePose> candidates) {
   for (LatticePose& pose : candidates) pose.score = 0.0;
   for (const RefineFamily& family : families) {

@@ -14,8 +14,8 @@ struct RefineReach {
   int bins;
 };
 
-/// Replaces each candidate by the best pose within the reach and +- 1 of the scales around it, as far as the score
-/// rises towards it at one of these headings. False if time was over before: then they are left as they were.
+/// Replaces each candidate by the best pose that can be reached from it uphill, at each heading and scale (+- 1) by
+/// itself, within `reach`. False if time ran out: then the candidates are unchanged.
 bool refine(const Level& level, RefineReach reach, const Deadline& deadline, std::vector<LatticePose>& candidates);
 
 }  // namespace roadfix

@@ -15,13 +15,13 @@
 namespace roadfix {
 namespace {
 
-// Places are alike at many headings and differ from each other: more of them tell more than more headings.
+// Scores differ more between places than between the headings of one place, so there are more places.
 constexpr int kPlaces = 256;
 constexpr int kHeadings = 16;
 constexpr std::int64_t kFewestScores = 512;
 
-/// The fractional part of i times an irrational number: evenly spread however many are taken, and in no step with
-/// streets. Of the golden ratio, and of its like in two dimensions (the plastic number).
+/// The fractional part of i times an irrational number: evenly spread however many are taken, and out of step with
+/// regular streets. Irrational numbers: the golden ratio and, for two dimensions, powers of the plastic number.
 double spread_evenly(int i, double irrational) { return std::fmod((i + 0.5) * irrational, 1.0); }
 constexpr double kGolden = 0.6180339887498949;
 constexpr double kPlasticEast = 0.7548776662466927;

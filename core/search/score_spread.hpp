@@ -1,4 +1,4 @@
-// How far the scores of poses spread by chance, told from some of them.
+// How widely the scores of poses spread by chance, estimated from a sample.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace roadfix {
 
-/// Root of the mean square of the scores of poses all over a region, as the feature map was given in size: of a level
-/// that is too fine to be scanned. nullopt where too few of them have a score, or time was over before.
+/// Root mean square of the scores of poses all over a region, at scale 1, on a level that is too fine to be scanned.
+/// nullopt where too few of them have a score, or time ran out.
 std::optional<double> score_spread(const Level& level, const PoseRegion& region, const Deadline& deadline);
 
 }  // namespace roadfix

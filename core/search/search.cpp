@@ -22,7 +22,7 @@ double ScoreBackground::log_likelihood(double score) const {
 
 namespace {
 
-/// What a search of so much ground has freed does not stay with the process.
+/// After a search of so much ground freed memory goes back to the system.
 constexpr double kMuchGroundKm2 = 100.0;
 
 SearchResult result_of(const SearchLevels& levels, const Scanned& scanned) {
@@ -50,12 +50,12 @@ SearchResult searched(const GridReader& read, double finest_cell_m, const Featur
   result.refined = refine(levels.coarse(), {.cells = 1, .bins = 1}, options.deadline, candidates);
   prove_at(levels.coarsest());
   for (int k = levels.coarsest() - 1; k >= 0; --k) {
-    candidates = levels.apart(std::move(candidates), levels.at(k + 1), levels.followed(k + 1));
+    candidates = levels.distinct_candidates(std::move(candidates), levels.at(k + 1), levels.candidates_followed(k + 1));
     descend(candidates);
     result.refined = refine(levels.at(k), {.cells = 2, .bins = 2}, options.deadline, candidates) && result.refined;
     prove_at(k);
   }
-  candidates = levels.distinct(candidates, levels.finest(), scan.separation_m(), kDistinctBins, kSurvivors);
+  candidates = levels.distinct(candidates, levels.finest(), {scan.separation_m(), kDistinctBins}, kSurvivors);
   const RankedPoses poses(levels, candidates);
   set_rivals(levels, scan, options, poses, result.background);
   FoundModes found = find_modes(levels, scan, options, poses, result.background);

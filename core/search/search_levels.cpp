@@ -10,44 +10,48 @@
 namespace roadfix {
 namespace {
 
-// Streets of a town blur into each other beyond 8 m. A scan in cells of 16 m costs an eighth, one over sizes of the
-// ground a sixteenth: it serves as well where enough ground was seen and more candidates are followed, and with less
-// where finer cells would take long.
+// Streets of a town blur into each other beyond this.
 constexpr double kCoarsestCellM = 8.0;
-constexpr int kFootprintCells = 32;  // that the coarse level keeps at least across a footprint
-constexpr double kCoarsestCellOfLargeM = 16.0;
-constexpr double kLargeKm2 = 30.0;          // of a region, times the sizes
-constexpr int kFootprintCellsOfLarge = 24;  // likewise
-constexpr double kCoarsestCellOfBroadM = 16.0;
-constexpr double kBroadM = 480.0;  // side of a square as large as what was seen
-// What lies where in a footprint of kilometres is known from coarser cells still, and tells places apart more surely.
-constexpr double kCoarsestCellOfWideM = 32.0;
-constexpr double kWideM = 1500.0;  // likewise
+constexpr double kHugeFootprintM = 1500.0;  // side of a square as large as the ground that was seen
 
-constexpr int kMostFootprintCells = 512;  // across what was seen of a footprint, on the finest level
+/// When the scan may have cells of up to this size: all of the conditions hold.
+struct ScanCells {
+  double coarsest_m;
+  double seen_m = 0.0;      ///< at least, as kHugeFootprintM
+  double side_cells = 0.0;  ///< of the footprint's longer side, at least
+  double km2 = 0.0;         ///< of the region, times the sizes of the ground that are searched, at least
+};
 
-// Of a proof, which may be given in coarser cells than the map's: roads are hardly wider.
+// Cells of 16 m cost an eighth of those of 8 m, with several sizes of the ground a sixteenth. They serve as well where
+// more ground was seen and more candidates are followed, and with less where finer cells would take long. Footprints of
+// kilometres tell places apart more surely, in coarser cells still.
+constexpr std::array<ScanCells, 4> kScanCells{{{.coarsest_m = kCoarsestCellM, .side_cells = 32.0},
+                                               {.coarsest_m = 16.0, .side_cells = 24.0, .km2 = 30.0},
+                                               {.coarsest_m = 16.0, .seen_m = 480.0},
+                                               {.coarsest_m = 32.0, .seen_m = kHugeFootprintM}}};
+
+constexpr int kMostFootprintCells = 512;  // across the ground that was seen, on the finest level
+
+// Cells of a proof, at most, and across a footprint, at least. They may be coarser than the map's: roads are as wide.
 constexpr double kProofCellM = 4.0;
-constexpr int kProofFootprintCells = 64;  // across a footprint at least
+constexpr int kProofFootprintCells = 64;
 
-// Followed from the coarse level. What is known of chance comes from the places that are followed: where they are few
-// for the ground, the one of them that happens to fit looks as if no other did.
+// Candidates that are followed from the scan. What chance gives is estimated from them: if they are few for so much
+// ground, one that fits by chance looks as if nothing else did.
 constexpr double kCandidatesPerKm2 = 32.0;
 constexpr double kFewestCandidates = 256.0;
 constexpr double kMostCandidates = 4096.0;
-constexpr double kCandidatesOfCoarser = 4.0;  // for each that is followed from the next level, of a scan beyond 8 m
+constexpr double kCandidatesOfCoarser = 4.0;  // per candidate of the next level, if the scan is coarser than 8 m
 
-int coarse_level(double finest_cell_m, double side_m, double seen_m, double area_km2, int sizes) {
-  const bool large = area_km2 * sizes >= kLargeKm2;
-  const auto fits = [&](double cell_m) {
-    const double across = side_m / cell_m;
-    return (cell_m <= kCoarsestCellM && across >= kFootprintCells) ||
-           (cell_m <= kCoarsestCellOfLargeM && large && across >= kFootprintCellsOfLarge) ||
-           (cell_m <= kCoarsestCellOfBroadM && seen_m >= kBroadM) ||
-           (cell_m <= kCoarsestCellOfWideM && seen_m >= kWideM);
+int coarse_level(double finest_cell_m, double side_m, double seen_m, double km2_times_sizes) {
+  const auto may_have = [&](double cell_m) {
+    return std::ranges::any_of(kScanCells, [&](const ScanCells& allowed) {
+      return cell_m <= allowed.coarsest_m && seen_m >= allowed.seen_m && side_m / cell_m >= allowed.side_cells &&
+             km2_times_sizes >= allowed.km2;
+    });
   };
   int level = 0;
-  while (fits(std::ldexp(finest_cell_m, level + 1))) ++level;
+  while (may_have(std::ldexp(finest_cell_m, level + 1))) ++level;
   return level;
 }
 
@@ -63,8 +67,8 @@ double side_seen_m(const FeatureMap& features) {
   return features.cell_m * std::sqrt(static_cast<double>(features.cells.observed_count()));
 }
 
-/// From the nadir, about which headings turn the footprint, to what lies farthest along its longer side; for a nadir
-/// within the footprint that of one in its middle.
+/// How far the footprint reaches from the nadir, about which headings turn it, along its longer side; at least as far
+/// as from a nadir in its middle.
 double radius_of(const FeatureMap& features) {
   return std::max(0.5 * features.side_m(), features.cell_m * features.off_nadir_cells());
 }
@@ -76,7 +80,7 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
     : region_(region), side_m_(features.side_m()), seen_m_(side_seen_m(features)) {
   const double radius_m = radius_of(features);
   const int sizes = Scales::for_footprint(radius_m, kCoarsestCellM, options.scale_range).count();
-  const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region.area_km2(), sizes);
+  const int coarsest = coarse_level(finest_cell_m, side_m_, seen_m_, region.area_km2() * sizes);
   const double coarse_cell_m = std::ldexp(finest_cell_m, coarsest);
   const Scales scales = Scales::for_footprint(radius_m, coarse_cell_m, options.scale_range);
   const HeadingBins bins = HeadingBins::for_footprint(radius_m, coarse_cell_m);
@@ -89,11 +93,11 @@ SearchLevels::SearchLevels(const GridReader& read, double finest_cell_m, const F
   }
 }
 
-std::size_t SearchLevels::followed(int index) const {
+std::size_t SearchLevels::candidates_followed(int index) const {
   const bool coarser = coarse().cell_m() > kCoarsestCellM;
   const double most = coarser ? kMostCandidates / kCandidatesOfCoarser : kMostCandidates;
-  const double cost = std::max(1.0, seen_m_ * seen_m_ / (kWideM * kWideM));  // of following one
-  const double wanted = std::clamp(kCandidatesPerKm2 * region_.area_km2(), kFewestCandidates, most) / cost;
+  const double cost_of_one = std::max(1.0, seen_m_ * seen_m_ / (kHugeFootprintM * kHugeFootprintM));
+  const double wanted = std::clamp(kCandidatesPerKm2 * region_.area_km2(), kFewestCandidates, most) / cost_of_one;
   if (index == coarsest()) {
     return static_cast<std::size_t>(std::max((coarser ? kCandidatesOfCoarser : 1.0) * wanted, kFewestCandidates));
   }
@@ -125,11 +129,11 @@ bool SearchLevels::within_region(const Level& level, const LatticePose& pose) co
   return widened(region_, level).contains(level.pose_of(pose));
 }
 
-std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
-                                                int coarse_bins_apart, std::size_t keep) const {
+std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, const Level& level,
+                                                const PoseSpacing& spacing, std::size_t keep) const {
   std::ranges::stable_sort(poses, std::ranges::greater{}, &LatticePose::score);
-  const int bins_apart = coarse_bins_apart * (level.bins.count() / coarse().bins.count());
-  const double apart_cells = apart_m / level.cell_m();
+  const int bins_apart = spacing.coarse_bins * (level.bins.count() / coarse().bins.count());
+  const double apart_cells = spacing.metres / level.cell_m();
   std::vector<LatticePose> kept;
   std::array<std::size_t, 2> count{};
   for (const LatticePose& pose : poses) {
@@ -148,9 +152,9 @@ std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, 
   return kept;
 }
 
-std::vector<LatticePose> SearchLevels::apart(std::vector<LatticePose> poses, const Level& level,
-                                             std::size_t keep) const {
-  return distinct(std::move(poses), level, kCandidatesApartCells * coarse().cell_m(), kCandidatesApartBins, keep);
+std::vector<LatticePose> SearchLevels::distinct_candidates(std::vector<LatticePose> poses, const Level& level,
+                                                           std::size_t keep) const {
+  return distinct(std::move(poses), level, {kCandidatesApartCells * coarse().cell_m(), kCandidatesApartBins}, keep);
 }
 
 std::vector<int> bins_within(const HeadingBins& bins, const PoseRegion& region) {

@@ -1,5 +1,5 @@
-// The pyramid that a search goes down: levels from the finest cells to those of the scan, and which of the poses on one
-// are places of their own.
+// The pyramid that a search goes down: levels from the finest cells to those of the scan, and which poses on a level
+// are distinct places.
 #pragma once
 
 #include <cstddef>
@@ -12,14 +12,20 @@
 namespace roadfix {
 
 inline constexpr std::size_t kSurvivors = 96;  ///< followed from each finer level
-/// Of the scan's cells and headings, between candidates that are followed.
+/// Between candidates that are followed, in cells and heading bins of the scan.
 inline constexpr double kCandidatesApartCells = 2.5;
 inline constexpr int kCandidatesApartBins = 2;
-inline constexpr int kDistinctBins = 3;  ///< of the scan's headings, between places of their own
+inline constexpr int kDistinctBins = 3;  ///< heading bins of the scan, between distinct places
 
-/// So far beside the headings of a region a place that fits better is looked for, as around it: the flanks of such a
-/// peak reach into the region.
+/// How far beyond the headings of a region a better place is looked for, as it is on the ground around the region: the
+/// flanks of such a peak reach into the region.
 inline const Angle kHeadingsBeyond = Angle::degrees(5.0);
+
+/// Two poses are distinct if they are farther apart than this in place or in heading.
+struct PoseSpacing {
+  double metres;
+  int coarse_bins;  ///< of the scan's level
+};
 
 class SearchLevels {
  public:
@@ -32,27 +38,31 @@ class SearchLevels {
   const Level& at(int index) const { return levels_[static_cast<std::size_t>(index)]; }
   const Level& coarse() const { return levels_.back(); }
   const Level& finest() const { return levels_.front(); }
-  /// From the finest cells that were given to those of a level. Large footprints leave the finest levels out.
+  /// Cells of this level are 2^halvings times as large as the finest ones given; more than `index` for large
+  /// footprints, which leave the finest levels out.
   int halvings(int index) const { return finest_ + index; }
   const PoseRegion& region() const { return region_; }
   /// The longer side of the feature map.
   double side_m() const { return side_m_; }
   /// How many candidates are followed from a level to the next finer one.
-  std::size_t followed(int index) const;
-  /// The level that a proof speaks of.
+  std::size_t candidates_followed(int index) const;
+  /// The level whose lattice of poses a proof covers.
   int proof_level() const;
-  /// The coarsest one whose scores spread as those do that calibrations are learned from.
+  /// The coarsest level whose cells are no larger than those that calibrations are learned in: scores in larger ones
+  /// spread farther.
   int spread_level() const;
 
-  /// With a step of the level's lattice around, so that each pose of the region has one of the lattice beside it.
+  /// The region and a step of the level's lattice around it, so that each of its poses has a neighbour on the lattice.
   static PoseRegion widened(const PoseRegion& region, const Level& level);
-  /// The widened region.
+  /// Whether the pose lies in the widened region.
   bool within_region(const Level& level, const LatticePose& pose) const;
-  /// Those that are apart from every better one, best first: up to `keep` from within the region, and as many others.
-  std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, double apart_m,
-                                    int coarse_bins_apart, std::size_t keep) const;
-  /// Those that are followed: distinct() ones.
-  std::vector<LatticePose> apart(std::vector<LatticePose> poses, const Level& level, std::size_t keep) const;
+  /// The poses that are distinct from every better one, best first: up to `keep` from within the region, and up to as
+  /// many from outside.
+  std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, const PoseSpacing& spacing,
+                                    std::size_t keep) const;
+  /// The same with the spacing of candidates that are followed.
+  std::vector<LatticePose> distinct_candidates(std::vector<LatticePose> poses, const Level& level,
+                                               std::size_t keep) const;
 
  private:
   const PoseRegion& region_;
@@ -65,7 +75,7 @@ class SearchLevels {
 /// The bins whose headings lie in the region.
 std::vector<int> bins_within(const HeadingBins& bins, const PoseRegion& region);
 
-/// Tells of a cell (column, row) of `positions` whether its middle lies in the region.
+/// Whether the middle of the cell (column, row) of `positions` lies in the region.
 std::function<bool(int, int)> cells_within(const GridGeometry& positions, const PoseRegion& region);
 
 /// From the cells of one level to those of the next finer one.

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kOutside = 4;  // modes around the region
 
-// A place at a heading beside those that were told is no rival, unless it is ten times as likely as the best one: of a
-// thousand headings that are told one is wrong (a camera mounted the other way round).
+// A place at a heading outside the given range is no rival unless it is ten times as likely as the best one: one in a
+// thousand headings given is wrong (a camera mounted the other way round).
 const double kHeadingIsWrong = std::log(10.0);
 
 /// Of the finest level, whose bins are twice as wide as those of modes.
@@ -37,9 +37,9 @@ std::optional<SearchMode> nearby_mode(const SearchLevels& levels, double apart_m
 }
 
 double other_roads_m(const Level& finest, const SearchMode& mode, int straight_roads) {
-  // What a straight road may bend, and be as wide.
+  // Width of the stripe that a straight road lies in.
   constexpr double kLeastLineM = 20.0;
-  constexpr double kLineShare = 0.05;
+  constexpr double kLineShare = 0.05;  // of the footprint's side
   constexpr double kCarriagewaysM = 40.0;
   const double cell_m = finest.cell_m();
   const FeatureMap north_up = rotated(resampled(finest.source, cell_m, mode.scale), mode.pose.heading);
@@ -66,7 +66,7 @@ void append_new(const ModeFinder& finder, const std::vector<SearchMode>& more, s
   }
 }
 
-/// Without the poses beside the headings of the region that are not far likelier than the best mode.
+/// Without poses at headings outside the region's range, except for those that are far likelier than the best mode.
 std::vector<LatticePose> worth_a_look(const SearchLevels& levels, std::vector<LatticePose> around,
                                       const SearchMode& best, const ScoreBackground& background) {
   const PoseRegion nearly = levels.region().grown(0.0, kHeadingsBeyond);
@@ -78,7 +78,7 @@ std::vector<LatticePose> worth_a_look(const SearchLevels& levels, std::vector<La
   return around;
 }
 
-/// Those of the modes that are around the region, and not the best one in it seen from across the border.
+/// The modes that lie around the region, without flanks of the best one in it.
 std::vector<SearchMode> modes_outside(const SearchLevels& levels, const PoseRegion& scanned, const ModeFinder& finder,
                                       std::vector<SearchMode> modes, const SearchMode& best) {
   std::erase_if(modes, [&](const SearchMode& mode) {
@@ -104,8 +104,8 @@ RankedPoses::RankedPoses(const SearchLevels& levels, const std::vector<LatticePo
 
 void set_rivals(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options,
                 const RankedPoses& poses, ScoreBackground& background) {
-  // As many as where no other was scanned: those of a region go deeper than those around it. But where it is scanned
-  // beyond its border only because it is tiny, its own are what chance is told by.
+  // No more than a region has by itself. But all of them if it was scanned beyond its border only because it is tiny:
+  // then its own are what chance is estimated from.
   const bool tiny = !options.surroundings && scan.scanned().area_km2() > levels.region().area_km2();
   const std::size_t count = tiny ? 2 * kSurvivors : kSurvivors;
   const std::span<const LatticePose> inside(poses.inside);

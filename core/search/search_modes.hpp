@@ -1,4 +1,4 @@
-// The last step of a search: its best candidates within the cell, and what is left as the background.
+// The last step of a search: its best candidates become modes, the others the background.
 #pragma once
 
 #include <optional>
@@ -9,15 +9,15 @@
 
 namespace roadfix {
 
-/// Poses of the finest level, distinct and best first, of the ground that was scanned.
+/// Distinct poses of the finest level, each list best first.
 struct RankedPoses {
   std::vector<LatticePose> inside;  ///< the region
-  std::vector<LatticePose> around;
+  std::vector<LatticePose> around;  ///< on ground that was scanned around it, or at headings outside its range
 
   RankedPoses(const SearchLevels& levels, const std::vector<LatticePose>& poses);
 };
 
-/// Sets what the places beside the best one tell of chance.
+/// Sets the rivals of the background and the region's share of them.
 void set_rivals(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options,
                 const RankedPoses& poses, ScoreBackground& background);
 
@@ -30,7 +30,7 @@ struct FoundModes {
   bool complete = true;  ///< false where the deadline ended it, after the first mode at the earliest
 };
 
-/// Modes from the best poses within the region; those that were flanks of one peak give one.
+/// Modes from the best poses within the region, one for each peak.
 FoundModes find_modes(const SearchLevels& levels, const SearchScan& scan, const SearchOptions& options,
                       const RankedPoses& poses, const ScoreBackground& background);
 

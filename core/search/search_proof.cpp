@@ -31,12 +31,12 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
   SearchProof proof{
       level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), bounded.known, 1.0, false, 0.0};
-  // What follows the best pose to the finest cells needs the rest of the time.
+  // Following the best pose to the finest cells needs the rest of the time.
   const Deadline deadline = options.deadline.after(0.5).within(options.proof_time);
   if (deadline.over()) return proof;
   const int largest = level.scales.reach();
   const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);
-  // Its cells are means of the finest ones, which are not as fine in every search.
+  // The halvings are part of the key since searches differ in the finest cells that these are means of.
   const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
                                           [&] { return BoundMap(level.read(window)); });
   bounded.map = map.get();

@@ -7,9 +7,9 @@
 
 namespace roadfix {
 
-/// `candidates` are those of the level SearchLevels::proof_level(); the best pose of the region is appended if it
-/// scores more than the best of them. What was found on the way to it is not: chance would be told by poses that only
-/// the order of threads brought up. Ends after options.proof_time, or halfway to the deadline.
+/// `candidates` are on the level SearchLevels::proof_level(); the best pose of the region is appended if it scores more
+/// than all of them. Other poses found on the way are not: which ones depends on the order of threads, and chance is
+/// estimated from the candidates. Ends after options.proof_time, or halfway to the deadline.
 SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates);
 
 }  // namespace roadfix

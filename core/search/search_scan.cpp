@@ -10,13 +10,13 @@ namespace {
 
 constexpr std::size_t kScanMaxima = 16384;
 constexpr std::size_t kCandidatesAround = 256;  // followed from outside of the region
-constexpr double kScanTimeShare = 0.75;         // at most, if the time is limited: what it finds has to be followed
-constexpr int kRivalsWanted = 1000;             // distinct places that a background is drawn from
-constexpr double kKm2AtAllHeadings = 50.0;      // at least, as far as the region is as large
+constexpr double kScanTimeShare = 0.75;         // of a limited time; the rest is for following the candidates
+constexpr int kRivalsWanted = 1000;             // distinct places that chance is estimated from
+constexpr double kKm2AtAllHeadings = 50.0;      // regions up to this area are scanned at all headings, larger at fewer
 
-// Searched around a region that has surroundings: from half a footprint on, a place inside shares few of the streets.
+// Searched around a region that has surroundings: half a footprint away, a place shares few streets with one inside.
 constexpr double kSidesBeyond = 0.5;
-constexpr double kLeastKm2 = 4.0;
+constexpr double kLeastKm2 = 4.0;  // in all
 
 }  // namespace
 
@@ -26,8 +26,8 @@ SearchScan::SearchScan(const SearchLevels& levels, const SearchOptions& options)
       separation_m_(std::max(kCandidatesApartCells * levels.coarse().cell_m(), 0.1 * levels.side_m())),
       scanned_(enlarged()) {}
 
-/// What chance gives is told from the best places at all headings, whatever range of them is asked for: among the few
-/// within a range, poor ones count too, and next to them chance seems to explain the best.
+/// Chance is estimated from the best places at all headings, whatever range is asked for: a narrow range holds so few
+/// places that poor ones are among the best of them, and a wrong place would stand out.
 PoseRegion SearchScan::at_more_headings() const {
   PoseRegion result = levels_.region();
   const Angle told = Angle::degrees(180.0 * std::min(1.0, kKm2AtAllHeadings / result.area_km2()));
@@ -36,8 +36,8 @@ PoseRegion SearchScan::at_more_headings() const {
   return result;
 }
 
-/// A small region holds too few places to tell what chance would give, and a wrong one not the true place: its
-/// surroundings are scanned as well.
+/// A small region holds too few places to estimate what chance gives, and a wrong prior does not hold the true place:
+/// the surroundings are scanned as well.
 PoseRegion SearchScan::enlarged() const {
   const PoseRegion region = at_more_headings();
   const double turns = region.heading_half_width.degrees() / 180.0;
@@ -75,13 +75,13 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
   const int reach = coarse.reach(coarse.scales.reach());
   const GridGeometry window = positions.padded(reach);
   const int block = scan_block(coarse.features.map);
-  // Its cells are means of the finest ones, which are not as fine in every search.
+  // The halvings are part of the key since searches differ in the finest cells that these are means of.
   return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings(levels_.coarsest())},
                                [&] { return ScanMap(coarse.read(window), reach, block); });
 }
 
-/// Scores spread the farther the coarser the cells are: of a coarser scan the spread is told from some poses in the
-/// cells that calibrations are learned in.
+/// The coarser the cells, the wider scores spread. If the scan has coarser cells than calibrations were learned in, the
+/// spread is estimated from a sample of poses in those; nullopt if not, or if the sample is too small.
 std::optional<double> SearchScan::finer_spread() const {
   if (levels_.spread_level() == levels_.coarsest()) return std::nullopt;
   return score_spread(levels_.at(levels_.spread_level()), scanned_, options_.deadline);
@@ -129,8 +129,9 @@ Scanned SearchScan::run() const {
     const double sd = std::sqrt(found.score_square_sum / static_cast<double>(found.poses));
     scanned.sd = finer_spread().value_or(sd);
   }
-  scanned.candidates = levels_.apart(found.inside, coarse, levels_.followed(levels_.coarsest()));
-  const std::vector<LatticePose> others = levels_.apart(found.outside, coarse, kCandidatesAround);
+  scanned.candidates =
+      levels_.distinct_candidates(found.inside, coarse, levels_.candidates_followed(levels_.coarsest()));
+  const std::vector<LatticePose> others = levels_.distinct_candidates(found.outside, coarse, kCandidatesAround);
   scanned.candidates.insert(scanned.candidates.end(), others.begin(), others.end());
   return scanned;
 }

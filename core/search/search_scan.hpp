@@ -1,5 +1,4 @@
-// The first step of a search: every pose of the region, and of its surroundings where it is small, at the coarsest
-// level.
+// The first step of a search: the scores of every pose of the region, and of its surroundings, at the coarsest level.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +13,11 @@
 namespace roadfix {
 
 struct Scanned {
-  /// Distinct and best first: those within the region and, where it was enlarged, as many from around it.
+  /// Distinct poses: those within the region, best first, then those from around it, best first.
   std::vector<LatticePose> candidates;
   double sd = 0.0;         ///< see ScoreBackground
   std::int64_t poses = 0;  ///< that were scored
-  double share = 1.0;      ///< of the poses that were scored before the deadline
+  double share = 1.0;      ///< of all poses, that were scored before the deadline
   int headings = 0;        ///< bins within the range
 };
 
@@ -34,7 +33,7 @@ class SearchScan {
   const PoseRegion& scanned() const { return scanned_; }
 
  private:
-  /// Of all sizes of the ground.
+  /// What coarse scans at all scales found together.
   struct Maxima {
     std::vector<LatticePose> inside;  ///< the region
     std::vector<LatticePose> outside;

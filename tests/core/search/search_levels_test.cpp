@@ -23,7 +23,7 @@ std::map<double, std::size_t> levels_of(double side_m, double region_m, double s
   options.scale_range = scale_range;
   const SearchLevels levels(testing::reader_of(map), 2.0, features, region, options);
   std::map<double, std::size_t> result;
-  for (int k = 0; k <= levels.coarsest(); ++k) result[levels.at(k).cell_m()] = levels.followed(k);
+  for (int k = 0; k <= levels.coarsest(); ++k) result[levels.at(k).cell_m()] = levels.candidates_followed(k);
   return result;
 }
 

@@ -35,7 +35,7 @@ std::size_t step_of(const BinnedPose& pose) {
   return (strip << (kBlockBits - kStepBits)) + step;
 }
 
-/// Places of the headings in an order in which those a quarter turn apart are neighbours.
+/// For each heading its place in an order in which headings a quarter turn apart are neighbours.
 std::vector<std::size_t> by_quarters(const HeadingBins& bins) {
   std::vector<std::size_t> places(static_cast<std::size_t>(bins.count()));
   const std::size_t quarter = places.size() / 4;
@@ -54,7 +54,7 @@ void sort_by(std::vector<BinnedPose>& poses, std::vector<BinnedPose>& spare, std
   poses.swap(spare);
 }
 
-/// Block by block, within a block heading by heading, and those a quarter turn apart behind each other.
+/// By blocks, within a block by headings in the order of by_quarters(), within a heading by strips and steps.
 void put_in_order(std::vector<BinnedPose>& poses, const HeadingBins& bins) {
   std::vector<std::pair<int, int>> blocks;
   for (const BinnedPose& pose : poses) {
@@ -98,7 +98,7 @@ GridGeometry window_of(Poses poses, double cell_m, int reach) {
   return GridGeometry{cell_m, low, high.col - low.col + 1, high.row - low.row + 1}.padded(reach);
 }
 
-/// Poses of one heading, by as many quarters to the right of the footprint's.
+/// Matches poses of one heading, so many quarter turns to the right of the footprint's.
 void match_on(const QuarterPlanes& planes, LatticeIndex origin, const PackedFootprint& footprint, int quarters,
               Poses poses, std::span<MatchSums> sums) {
   std::vector<PlaneCell> places;

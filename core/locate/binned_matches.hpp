@@ -1,4 +1,4 @@
-// The sums of equation (5) at many poses on the lattice: the map is read once for those that are near each other, and
+// The sums of equation (5) at many poses on the lattice: the map is read once for all that are close to each other, and
 // the feature map is turned once to each heading.
 #pragma once
 

@@ -1,8 +1,8 @@
-// From what a search says about its best place to the probability that it is the true one, learned from queries with
-// known truth (docs/calibration.md). Monotone in every figure, and never surer than the examples it was learned from:
-// beyond the largest value learned from a figure counts as that value, and no probability exceeds `highest`. Above 0.5
-// it is no surer than the search itself that no other place fits as well by chance, whatever the examples say; at most
-// 0.5 where the place rests on less than kMinOtherRoadsAcross.
+// From the figures of a search to the probability that its best place is the true one, learned from queries with known
+// truth (docs/calibration.md). Monotone in every figure, and never surer than the examples: a figure beyond the largest
+// one learned from counts as that one, and no probability exceeds `highest`. Above 0.5 it is at most the probability
+// that no other place fits as well by chance (SearchFigures::surprise); it is at most 0.5 with less than
+// kMinOtherRoadsAcross.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 
 namespace roadfix {
 
-/// The region that a probability speaks of: the ellipse of so many standard deviations about the best mode. It holds
-/// 99.97 % of a normal distribution, so that confidences up to 0.999 can be asked for.
+/// A probability is that of the true position lying within the ellipse of so many standard deviations about the best
+/// mode. It holds 99.97 % of a normal distribution, so that confidences up to 0.999 can be asked for.
 inline constexpr double kRegionSigmas = 4.0;
 
 struct CountedFigure {
@@ -40,8 +40,8 @@ struct Calibration {
 
   double bias = 0.0;
   std::array<Term, kCountedFigures.size()> terms;
-  double highest = 0.0;  ///< what the number of examples can vouch for, below 1
-  // Factors on the standard deviations that the shape of the peak gives, so that ellipses hold what they should.
+  double highest = 0.0;  ///< probability that the number of examples can vouch for, below 1
+  // Factors on the standard deviations that follow from the shape of the peak, so that ellipses hold what they should.
   double position_sigma_scale = 1.0;
   double heading_sigma_scale = 1.0;
 

@@ -6,8 +6,7 @@ namespace {
 constexpr double kConvergedWeight = 0.9;
 constexpr double kConvergedSigmaM = 25.0;
 
-/// Equation (7) is no ratio to chance, and bears out what it does not reject. Where no look has borne the place out of
-/// late there is no time of one.
+/// Equation (7) is no ratio to chance: what it does not reject counts as told from others.
 bool is_told_from_others(const TrackSettings& settings, const TrackerState& state) {
   if (settings.measurement_model.kind == LikelihoodKind::kEquation7) return true;
   if (!settings.recovers) return state.claim.outweighs_chance();

@@ -11,20 +11,20 @@
 namespace roadfix {
 namespace {
 
-// An agreement of this many standard deviations is not chance, even where all places of a regular city reach it.
+// An agreement of this many standard deviations is not chance, even if many places of a regular city reach it.
 constexpr double kBeyondChanceDeviations = 12.0;
 
-// Chance would give a hundredth of a place that fits as well.
+// A surprise: the number of places that fit as well by chance is 0.01.
 constexpr double kBeyondChance = 4.6;
 
-// Where the best place in the region would be likely, a better one outside of it is worth a word, and nobody is told
-// that it fits by chance.
+// If the best place in the region is likelier than this, the answer does not say that it fits by chance, and a better
+// place outside is mentioned.
 constexpr double kLikely = 0.5;
 
-// Footprints beyond the border of a prior: so far a vehicle may be of which the prior says a little too little.
+// In sides of the footprint, beyond the border of the prior: the vehicle may be there if the prior is a little small.
 constexpr double kJustOutsideSides = 0.5;
 
-/// How many times as likely as the best mode each mode is.
+/// The likelihood of each mode over that of the best one.
 std::vector<double> likelihood_ratios(const SearchResult& found) {
   const ScoreBackground& background = found.background;
   const double best = background.log_likelihood(found.modes.front().score);
@@ -35,7 +35,7 @@ std::vector<double> likelihood_ratios(const SearchResult& found) {
   return ratios;
 }
 
-/// The best mode has its probability, the others are to it as their likelihoods are, as far as that leaves room.
+/// The best mode gets its probability, the others in proportion to their likelihoods, as far as that leaves room.
 std::vector<double> weights_of(const std::vector<double>& ratios, double probability) {
   std::vector<double> weights;
   for (const double ratio : ratios) weights.push_back(probability * ratio);
@@ -107,7 +107,7 @@ void explain_by_chance(Decision& decision, bool bare, std::string explanation) {
   }
 }
 
-/// The side of a square as large as the ground that the best place is compared over.
+/// Side of a square as large as the ground that is compared at the best place.
 double across_m(const SearchFigures& figures) { return std::exp(0.5 * figures.ground); }
 
 std::string too_few_shared_roads(const SearchFigures& figures) {
@@ -118,7 +118,7 @@ std::string too_few_shared_roads(const SearchFigures& figures) {
       figures.other_roads_across.value_or(0.0) * across_m(figures), kMinOtherRoadsAcross * across_m(figures));
 }
 
-/// Share of the best mode beside the places around the region, as if those lay in it.
+/// Share of the best mode among itself and the places around the region.
 double share_beside_outside(const SearchResult& found) {
   const ScoreBackground& background = found.background;
   const double best = background.log_likelihood(found.modes.front().score);
@@ -127,7 +127,7 @@ double share_beside_outside(const SearchResult& found) {
   return 1.0 / (1.0 + others);
 }
 
-/// Whether chance does not explain how well the roads fit at the best place around the region, which is known then.
+/// Whether the best place around the region fits better than chance explains.
 bool is_known_outside(const SearchResult& found) {
   if (found.outside.empty()) return false;
   const std::span<const double> rivals(found.background.rivals);

@@ -34,8 +34,8 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
   return result;
 }
 
-/// Of frames that were not where they are said to have been, those that agree with each other find their place, and the
-/// pose that is asked for is that of another one. A frame that shows hardly any road cannot tell.
+/// If the offsets between frames are wrong, the frames that agree with each other are located, but the position asked
+/// for is that of another one. A frame that shows hardly any road contradicts nothing.
 bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMode& best, double rho_of_all) {
   constexpr double kLeastShare = 0.5;
   const FeatureMap cells = in_cells_of(map, own_frame);
@@ -44,7 +44,7 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMo
   return rho.value_or(0.0) < kLeastShare * rho_of_all;
 }
 
-// What is no likelier is no claim of a place, whatever the status.
+// A place of no more probability is not claimed, whatever the status.
 constexpr double kMostProbable = 0.5;
 
 bool claims_a_place(const Fix& fix) {
@@ -77,7 +77,7 @@ Fix refused(const MapView& map, FootprintRefusal refusal) {
   return fix;
 }
 
-/// All but the modes, and what only the caller knows of the search.
+/// All but the modes, the area and the time.
 Fix fix_of(const MapView& map, const SearchResult& found, const Decision& decision) {
   Fix fix;
   fix.status = decision.status;
@@ -112,7 +112,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   const PoseRegion region = search_region(map, prior, options);
   const FeatureMap cells = in_cells_of(map, features);
   const FeatureMap soft = softened(cells);
-  // As it was given, too: of one smaller than a cell of the map next to nothing is left.
+  // As given, too: little is left of one that is smaller than a cell of the map.
   for (const FeatureMap* seen : {&features, &cells, &soft}) {
     if (auto refusal = refusal_of(*seen)) return refused(map, *std::move(refusal));
   }

@@ -23,8 +23,8 @@ struct FixOptions {
   std::optional<double> max_search_km2{};  ///< beyond it LimitExceeded
   /// The best place is compared with what lies just beyond the prior (SearchOptions::surroundings).
   bool looks_beyond_prior = true;
-  /// Where several frames were laid together: the one whose nadir is asked for. It alone has to bear a likely place
-  /// out.
+  /// If several frames were laid together: the one whose position is asked for. It has to confirm a likely place by
+  /// itself.
   std::optional<FeatureMap> own_frame{};
   std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr
   SearchOptions search{};  ///< all but the cache and the surroundings, which the map gives
@@ -50,7 +50,7 @@ struct Fix {
   std::vector<FixMode> modes;            ///< best first; also given for no_fix, as a hint that must not be flown on
   std::optional<SearchFigures> figures;  ///< of the best mode
   double searched_km2 = 0.0;
-  /// Of the poses of the region, looked at before the time was over; of the others nothing is known.
+  /// Share of the poses of the region that were scored in time; of the others nothing is known.
   double searched_share = 1.0;
   bool complete = true;  ///< false where the time limit ended the search
   int headings = 0;
@@ -60,8 +60,8 @@ struct Fix {
   std::chrono::duration<double, std::milli> search_time{};
 };
 
-/// What locate() searches. Throws what that does of the map, the prior and the options: to be asked before roads are
-/// looked for in a frame, which takes long.
+/// The region that locate() searches. Throws what that throws about map, prior and options: call it before detecting
+/// the roads of a frame, which takes long.
 PoseRegion search_region(const MapView& map, const Prior& prior, const FixOptions& options);
 
 /// Search (core/search/search.hpp), then decide (calibration.hpp says where probabilities come from).

@@ -13,22 +13,22 @@
 namespace roadfix {
 namespace {
 
-// A simulator that hovers draws one picture again and again, with odometry that may tremble.
+// A hovering simulator draws the same picture again and again, while its odometry may jitter.
 constexpr double kMovedM = 1.0;
 constexpr double kTurnedRad = 0.01;
 
-// Views are compared in cells so many times as large at least, and at most so many across: noise of single cells is
-// evened out, and a state stays small.
+// Views are compared in cells at least so many times as large, and at most so many across: that averages the noise of
+// single cells, and keeps states small.
 constexpr double kCoarser = 2.0;
 constexpr int kMaxAcrossCompared = 128;
 static_assert(kMaxAcrossCompared <= RecentFrames::kMaxAcross, "LastView::earlier keeps no larger one");
 
-constexpr double kApartCells = 3.0;  // by which roads must have moved before views are compared
+constexpr double kApartCells = 3.0;  // views are compared once roads must have moved by this
 constexpr double kMinShareInCommon = 0.25;
-// Of 537 views of 16 flights over Montevideo and Adiyaman none correlated by more than 0.51 with one before as if
-// nothing had moved. One that stands still, with 3 % of its cells turned over, does so by 0.9.
+// Laid in place over an earlier view, none of 537 views of 16 flights over Montevideo and Adiyaman correlated by more
+// than 0.51. A view that stands still, with 3 % of its cells inverted, correlates by 0.9.
 constexpr double kStillCorrelation = 0.75;
-constexpr double kStillMargin = 0.3;  // by which it correlates better so than as the odometry tells
+constexpr double kStillMargin = 0.3;  // at least so much better in place than moved as the odometry says
 
 bool shows_road(const FeatureMap& features) { return std::ranges::any_of(features.cells.cells(), is_road); }
 
@@ -48,7 +48,7 @@ bool has_same_shape(const FeatureMap& a, const FeatureMap& b) {
   return a.cell_m == b.cell_m && a.cells.cols() == b.cells.cols() && a.cells.rows() == b.cells.rows();
 }
 
-/// Pearson's over the cells observed in both, with `earlier` laid where it was taken; nullopt where few are.
+/// Pearson's over the cells observed in both, with `earlier` laid where it was taken; nullopt if there are too few.
 std::optional<double> correlation_of(const FeatureMap& features, const PlacedFeatures& earlier) {
   const Placement placement = placement_in(earlier, features.nadir);
   MatchSums sums;
@@ -65,7 +65,7 @@ std::optional<double> correlation_of(const FeatureMap& features, const PlacedFea
   return pearson(sums);
 }
 
-/// By which roads at half of the way to the rim lie elsewhere in the picture, in cells.
+/// How far roads halfway to the rim have moved in the picture, in cells.
 double cells_apart(const PlacedFeatures& earlier) {
   const FeatureMap& features = earlier.features;
   const double arm = 0.25 * std::min(features.cells.cols(), features.cells.rows());
@@ -80,13 +80,13 @@ bool is_same_view(const FeatureMap& a, const FeatureMap& b) {
   return a.cell_m == b.cell_m && a.cells == b.cells && shows_road(a);
 }
 
-void LastView::move(const std::optional<Odometry>& odometry, bool tells_ground) {
+void LastView::move(const std::optional<Odometry>& odometry, bool is_complete) {
   for (SeenView& view : seen) {
     view.moved_m += odometry ? distance_m(*odometry) : kMovedM;
     view.turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
   }
   if (stands_still) return;
-  if (odometry && tells_ground) {
+  if (odometry && is_complete) {
     earlier.move(*odometry, {});
   } else {
     earlier.clear();

@@ -1,7 +1,7 @@
-// What a track saw of late, to notice a camera or a video link that has stopped while the vehicle flies on, or that
-// goes round in its last pictures. Two pictures of a live camera are never the same to the last cell; and where each
-// picture of a stopped one has other noise (encoded anew, with a clock drawn in), roads stay where they were instead of
-// moving as the odometry tells.
+// What a track saw lately, to notice a camera or video link that has stopped while the vehicle flies on, or that
+// repeats its last pictures. Two pictures of a live camera are never the same to the last cell. If those of a stopped
+// one differ by noise (encoded anew, with a clock drawn in), roads stay in place instead of moving as the odometry
+// says.
 #pragma once
 
 #include <cstddef>
@@ -15,21 +15,21 @@
 
 namespace roadfix {
 
-/// Whether a vehicle that moved so far should see something else.
+/// Whether a vehicle that moved so far has to see something else.
 bool has_moved(double moved_m, double turned_rad);
 
-/// Whether two pictures are one, to the last cell. Never of a feature map without any road: one wood is like the next.
+/// Whether two pictures are the same to the last cell. False without any road: one wood looks like the next.
 bool is_same_view(const FeatureMap& a, const FeatureMap& b);
 
-/// kRepeated: a picture that was seen before the vehicle moved, as is_same_view() tells. kStandsStill: other cells,
-/// but its roads lie as they lay before the vehicle moved, and not as they should since: the camera has stopped, or the
+/// kRepeated: the same picture (is_same_view()) was seen before the vehicle moved. kStandsStill: other cells, but the
+/// roads lie where they lay before the vehicle moved, and not where they should be now: the camera has stopped, or the
 /// odometry is wrong.
 enum class View { kNew, kRepeated, kStandsStill };
 
 /// A feature map with roads.
 struct SeenView {
   std::uint64_t digest = 0;
-  double moved_m = 0.0;     ///< along the odometry since it was seen for the first time
+  double moved_m = 0.0;     ///< by the odometry, since it was first seen
   double turned_rad = 0.0;  ///< in either direction
 
   friend bool operator==(const SeenView&, const SeenView&) = default;
@@ -38,14 +38,14 @@ struct SeenView {
 struct LastView {
   static constexpr std::size_t kRemembered = 16;
 
-  std::vector<SeenView> seen;  ///< different ones, the newest first
-  bool stands_still = false;   ///< what was seen last is a View::kStandsStill
-  RecentFrames earlier;        ///< one view at most, that later ones are compared with, in coarser cells
+  std::vector<SeenView> seen;  ///< all different, newest first
+  bool stands_still = false;   ///< the last one was View::kStandsStill
+  RecentFrames earlier;        ///< at most one view, in coarser cells, that later ones are compared with
 
-  /// The vehicle has moved on; a step that tells no odometry may have led anywhere. `tells_ground`: the odometry tells
-  /// the motion over the ground (no wind, no lost steps), so that it says where roads should be seen next.
-  void move(const std::optional<Odometry>& odometry, bool tells_ground);
-  /// Compares it with earlier ones, and remembers it.
+  /// The vehicle has moved; without odometry it may be anywhere. `is_complete`: as StepMotion::odometry_is_complete(),
+  /// so that it says where roads should be seen next.
+  void move(const std::optional<Odometry>& odometry, bool is_complete);
+  /// Compares the view with earlier ones, and remembers it.
   View take_in(const FeatureMap& features);
 
   friend bool operator==(const LastView&, const LastView&) = default;

@@ -14,15 +14,15 @@
 namespace roadfix {
 
 struct MatchOptions {
-  /// 0: every pose exactly, its feature map resampled to the very heading and place within the cell. Else poses share
-  /// headings in bins of this step and lie on the nearest cell: far faster for many poses.
+  /// 0: each pose exactly, with the feature map resampled to its heading and its place within the cell. Else headings
+  /// are rounded to bins of this step and positions to cells: far faster for many poses.
   Angle heading_step;
   int threads = 1;
   std::stop_token stop;
 };
 
-/// One score per pose, in their order. Where a pose lies off the map nothing is observed and rho is not defined.
-/// Throws InvalidInput for positions that are no place on Earth and for a feature map that cannot be used.
+/// One score per pose, in their order. For a pose off the map nothing is observed and rho is not defined. Throws
+/// InvalidInput for positions that do not exist on Earth and for a feature map that cannot be used.
 std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                               const MatchOptions& options = {});
 

@@ -9,8 +9,8 @@
 namespace roadfix {
 
 enum class LikelihoodKind {
-  /// How much likelier the correlation (Pearson's, over the means of m and l apart) is at the true pose than by chance,
-  /// both taken as normal with the spread that independent samples of the ground leave.
+  /// How much likelier Pearson's correlation is at the true pose than by chance, both taken as normal, with the spread
+  /// of as many independent samples of the ground.
   kCorrelation,
   /// Equation (7) as it is.
   kEquation7,
@@ -29,9 +29,9 @@ struct MeasurementModel {
   /// Natural logarithm of how much likelier the measurement is at this pose than by chance; for equation (7) the
   /// logarithm of P itself, -infinity where P is 0.
   ///
-  /// `frame_cells` is how many cells the feature map observes. Those of them that the map does not observe are taken to
-  /// agree as by chance. Were they left out, a pose mostly outside the map, where little can disagree, would beat the
-  /// true one. Equation (7) is as it stands and counts the cells observed in both, however few.
+  /// `frame_cells` is how many cells the feature map observes. Those that the map does not observe are taken to agree
+  /// as by chance: if they were left out, a pose mostly off the map, where little can disagree, would beat the true
+  /// one. Equation (7) counts only the cells observed in both, however few.
   double log_likelihood(const MatchSums& sums, std::int64_t frame_cells, double cell_m) const;
   /// Whether a measurement whose mean likelihood under the belief is this supports the belief.
   bool supports(double mean_likelihood) const;

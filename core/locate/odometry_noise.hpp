@@ -1,4 +1,4 @@
-// How uncertain the odometry of a step is where the vehicle does not say it.
+// How uncertain the odometry of a step is if the vehicle does not say so.
 #pragma once
 
 #include <utility>
@@ -13,8 +13,8 @@ namespace roadfix {
 /// about as uncertain as in sixty.
 OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const VehicleNoise& noise);
 
-/// The odometry of a step and of `lost` steps before it, of which nothing is known: they are taken to have been like
-/// this one, give or take half of it (1 sigma).
+/// The odometry of a step together with `lost` unknown steps before it, which are taken to have been like it, give or
+/// take half of it (1 sigma).
 std::pair<Odometry, OdometryCovariance> with_lost_steps(const Odometry& odometry, OdometryCovariance covariance,
                                                         double lost);
 

@@ -10,7 +10,7 @@
 namespace roadfix {
 namespace {
 
-/// Of the position of a mode as a fix tells it.
+/// Covariance of the position of a mode as a fix states it.
 PositionCovariance told_covariance(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                                    const SearchMode& mode) {
   const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;

@@ -1,4 +1,4 @@
-// Which of the peaks that a search found are places of their own.
+// Which of the peaks that a search found count as other places than the best one.
 #pragma once
 
 #include "core/locate/calibration.hpp"
@@ -6,16 +6,17 @@
 
 namespace roadfix {
 
-/// Whether two poses are so near each other, in place and heading, that nobody would take them for two places.
+/// Whether two poses are so close to each other, within 25 m and 15 degrees, that they may be one place.
 bool is_same_place(const GridPose& a, const GridPose& b);
 
-/// Another place than the best mode is one that is_same_place() tells from it, or one beyond kRegionSigmas of it:
-/// - SearchResult::nearby is counted among the modes and the rivals within the region if it lies beyond the region that
-///   a probability speaks of, since sources of a map may lie beside each other by what it states of its registration.
-/// - SearchResult::outside keeps those beyond the peak of the best mode alone. The registration and the nadir err for
-///   both alike, and where the better one lies outside, the prior is wrong.
+/// A mode is another place than the best one if is_same_place() is false or it lies beyond kRegionSigmas of the best
+/// one:
+/// - SearchResult::nearby joins the modes and the rivals within the region if it is beyond kRegionSigmas of the stated
+///   ellipse, as where sources of a map are shifted against each other.
+/// - Modes that are no other places are removed from SearchResult::outside. The ellipse is that of the peak alone here,
+///   since errors of registration and nadir move both modes alike.
 ///
-/// `nadir_sigma_m` as of a FeatureMap.
+/// `nadir_sigma_m`: of the FeatureMap that was searched for.
 void sort_out_other_places(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                            SearchResult& found);
 

@@ -10,7 +10,7 @@
 namespace roadfix {
 namespace {
 
-/// Cells of the frame that the map observes, mean over the belief.
+/// How many cells of the frame the map observes, averaged over the belief.
 double mean_cells_on_map(const Particles& p, const ParticleMatches& matches) {
   double cells = 0.0;
   for (std::size_t i = 0; i < matches.sums.size(); ++i) cells += p.weight[i] * static_cast<double>(matches.sums[i].n);
@@ -40,7 +40,7 @@ std::optional<std::vector<double>> log_likelihoods_of(const Particles& particles
   }
   std::vector<double> log_likelihoods(matches.sums.size());
   for (std::size_t i = 0; i < log_likelihoods.size(); ++i) {
-    // A frame says as much of larger ground as of smaller: its cells are larger then, and not more.
+    // A frame says as much at any scale: resampled it has scale^2 times the cells, which count for as much less ground.
     const double scale = matches.scales[i];
     const std::int64_t cells = std::llround(scale * scale * frame_cells);
     log_likelihoods[i] = model.log_likelihood(matches.sums[i], cells, features.cell_m / scale);

@@ -11,15 +11,15 @@
 
 namespace roadfix {
 
-/// Whether there is road enough in the features to compare a map with. They hold probabilities as they are: halved log
-/// odds make as much of a detector's noise.
+/// Whether there is enough road in the features to compare with a map. Of probabilities, not of half their log odds,
+/// which amplify a detector's noise.
 bool shows_roads(const FeatureMap& features);
-/// Of the belief, the share whose ground has roads to compare a frame with, by sums of probabilities as they are.
+/// The share of the belief whose ground has enough road to compare a frame with. `matches`: of probabilities, too.
 double share_with_roads(const Particles& particles, const ParticleMatches& matches);
 
 /// MeasurementModel::log_likelihood() of each particle, from the sums that match_particles() gave for `features`.
-/// nullopt where they speak neither for nor against the belief: they show no ground, or it lies where the map shows
-/// next to nothing.
+/// nullopt where they neither support nor contradict the belief: they show no ground, or the map shows hardly any
+/// there.
 std::optional<std::vector<double>> log_likelihoods_of(const Particles& particles, const ParticleMatches& matches,
                                                       const FeatureMap& features, const MeasurementModel& model);
 

@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kLargestSideM = 20'000.0;
 constexpr int kMaxCellsAcross = 8192;
-// Further off the least turn moves the footprint by more than it takes to tell places apart.
+// Farther off, the smallest turn moves the footprint by more than what separates places.
 constexpr double kMaxSidesOff = 3.0;
 
 void require_usable(const FeatureMap& features) {
@@ -50,8 +50,7 @@ bool is_near_nadir(const FeatureMap& features) {
                                  kMaxCellsAcross));
 }
 
-/// The map is read as far around a pose as the feature map lies from its nadir. Of a small one far off that would be
-/// gigabytes.
+/// The map is read as far around a pose as the feature map reaches from its nadir: gigabytes for a small one far away.
 void require_within_reach(const FeatureMap& features, double cell_m) {
   const double reach = features.off_nadir_cells() + 0.5 * std::hypot(features.cells.cols(), features.cells.rows());
   if (reach > kMaxCellsAcross * cell_m / features.cell_m) refuse_nadir(features);
@@ -63,8 +62,8 @@ FeatureMap nothing_observed_of(FeatureMap features) {
   return features;
 }
 
-/// Without the rows and columns around that hold nothing observed: how large a canvas is says nothing. A sliver that is
-/// left too far from the nadir is as good as nothing.
+/// Without the surrounding rows and columns of unobserved cells: the size of the canvas must not matter. If what is
+/// left is too far from the nadir, nothing counts as observed.
 FeatureMap cropped_to_observed(const FeatureMap& features) {
   const CellArray& cells = features.cells;
   IndexRange cols{cells.cols(), 0};

@@ -1,4 +1,4 @@
-// What the outside gives of a feature map, made ready for the grid of a map.
+// Checks of what is searched for and where, and the feature map in cells of the map.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,9 @@
 
 namespace roadfix {
 
-/// What was observed of the feature map, in cells of the map or of one of its overviews: the coarsest that still hold
-/// what it shows. One cell that was not observed, below the UAV, where nothing was, or only a sliver far off.
-/// Throws InvalidInput for an empty feature map, one of a size that makes no sense, and one too far from its nadir.
+/// The observed part of the feature map, in cells of the map or of the coarsest overview that still holds its detail. A
+/// single unobserved cell below the UAV if nothing was observed, or only a sliver far away. Throws InvalidInput for a
+/// feature map that is empty, too large, of an impossible cell size, or too far from its nadir.
 FeatureMap in_cells_of(const MapView& map, const FeatureMap& features);
 
 /// Throws InvalidInput ("parameter-out-of-range") unless it is a share from 0 to kMaxScaleRange.

@@ -32,7 +32,7 @@ std::vector<GridQuad> quads_in(const MapView& map, const GeoBox& box) {
   return grid_quads_of(map.zone, box, map.extent);
 }
 
-/// The part of the box that one of them reaches into; empty where they do not meet.
+/// The smallest box around the parts of `box` that lie in the quads; empty if there are none.
 GridBox within(const std::vector<GridQuad>& quads, const GridBox& box) {
   GridBox result = kEmptyBox;
   for (const GridQuad& quad : quads) {
@@ -52,7 +52,7 @@ bool meet(const GridCircle& circle, const GridBox& box) {
                                  map.id.name, shown_ground_beside(asked, within_m, map.zone, map.extent)));
 }
 
-/// The largest difference to that in the middle of the box.
+/// The largest difference of the convergence within the box from that in its middle.
 Angle convergence_range(const UtmZone& zone, const GridBox& box) {
   const Angle middle = zone.convergence(box.centre());
   Angle range;

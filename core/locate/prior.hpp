@@ -1,4 +1,4 @@
-// Where a vehicle may be, as it is known before a search, and what of a map that leaves.
+// What is known before a search of where a vehicle may be, and the region of the map that this leaves.
 #pragma once
 
 #include <optional>
@@ -27,9 +27,9 @@ struct Prior {
   std::optional<HeadingRange> heading;
 };
 
-/// The part of the map that the prior leaves, and headings as far as they are within the range somewhere in it. Throws
-/// InvalidInput where it leaves nothing ("prior-outside-map", "prior-contradictory", "map-unobserved"), and "prior-..."
-/// for a prior that makes no sense.
+/// The part of the map within the prior, and the grid headings that are within its range anywhere in that part. Throws
+/// InvalidInput if nothing is left ("prior-outside-map", "prior-contradictory", "map-unobserved") and for numbers out
+/// of range ("parameter-out-of-range").
 PoseRegion region_of(const MapView& map, const Prior& prior);
 
 }  // namespace roadfix

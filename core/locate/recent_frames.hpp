@@ -1,7 +1,6 @@
-// What a track saw last, laid together along the odometry for a search: one frame of it may look like many places.
-//
-// As few frames as show new ground, as near as the odometry still holds them together, and none that would make more of
-// them than a state may carry on disk.
+// The last frames of a track, laid together along the odometry for a search, since a single frame may look like many
+// places. Kept are frames that show new ground and that the odometry still places accurately, as many as a state on
+// disk may hold.
 #pragma once
 
 #include <cstddef>
@@ -22,7 +21,7 @@ class RecentFrames {
   static constexpr std::size_t kMaxCells = std::size_t{1} << 19U;  ///< in all kept frames together, observed or not
   /// A frame closer to a kept one than this share of its shorter side shows nothing new.
   static constexpr double kApartShare = 0.25;
-  /// A frame is kept until the odometry may have misplaced its rim by this much, 1 sigma.
+  /// A frame is kept until the error of the odometry at its rim reaches this, 1 sigma.
   static constexpr double kMaxSlipM = 20.0;
   /// A frame is kept until the vehicle is this many of its longer sides away.
   static constexpr double kMaxSides = 1.5;
@@ -38,11 +37,10 @@ class RecentFrames {
   RecentFrames() = default;
   /// As frames() gave them.
   explicit RecentFrames(std::vector<Frame> frames) : frames_(std::move(frames)) {}
-  /// Whether it is small enough to be kept, and not too far off by now.
+  /// Whether the frame is small enough to be kept, and not too far away by now.
   static bool may_keep(const Frame& frame);
 
-  /// The vehicle has moved on; lets go of the frames that are then too far off. `odometry` and `covariance` as
-  /// OdometryMotion takes them.
+  /// The vehicle has moved; drops frames that are too far away now. `odometry` and `covariance`: as for OdometryMotion.
   void move(const Odometry& odometry, const OdometryCovariance& covariance);
   /// Keeps what is seen where the vehicle is now, if that is new ground and not too large.
   void keep(const FeatureMap& features);

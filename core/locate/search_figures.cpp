@@ -7,7 +7,7 @@
 namespace roadfix {
 namespace {
 
-// Of a region without any rival, or with too few to tell how they thin out: chance may explain everything.
+// With fewer rivals their tail is unknown, and chance may explain everything.
 constexpr std::size_t kFewestRivals = 12;
 constexpr double kUnknown = -10.0;
 constexpr double kLargestFigure = 1000.0;
@@ -18,7 +18,7 @@ double fisher(double score) {
   return std::atanh(std::clamp(score, -kPerfect, kPerfect));
 }
 
-/// Of the rivals' scores above the lowest of them.
+/// Of the rivals' scores above the lowest one, in Fisher's z.
 double mean_excess(std::span<const double> rivals) {
   const double lowest = fisher(rivals.back());
   double sum = 0.0;
@@ -26,7 +26,7 @@ double mean_excess(std::span<const double> rivals) {
   return sum / static_cast<double>(rivals.size() - 1);
 }
 
-/// How the rivals of a place thin out, and how far it is above the lowest of them, both in Fisher's z.
+/// The mean excess of rivals above the lowest one, and that of the place itself, both in Fisher's z.
 struct Tail {
   double mean_excess;
   double excess;

@@ -22,10 +22,10 @@ CellArray soft_cells(const GridReader& read, const GridGeometry& geometry) {
   return cells;
 }
 
-constexpr int kKeptBlockCells = 128;  // of coarser cells that are made and kept at a time
+constexpr int kKeptBlockCells = 128;  // side of the blocks of coarser cells that are made and kept
 constexpr std::size_t kBytesOfOneSearch = std::size_t{64} << 20;
 
-// From cells two levels finer: roads are hardly narrower than a quarter of the coarsest cells.
+// Coarser cells are made from cells two levels finer: roads are hardly narrower than a quarter of the coarsest ones.
 constexpr int kFinerLevels = 2;
 
 struct SoftBlock {

@@ -12,10 +12,10 @@
 
 namespace roadfix {
 
-/// Reads half the log odds of `map` for a search whose finest cells are `finest_cell_m` wide. Coarser cells are kept
-/// in MapView::searches, so every search that shares it has to read through such a reader.
+/// Reads `map` as half its log odds for a search with finest cells of `finest_cell_m`. Coarser cells are kept in
+/// MapView::searches, so all searches that share it must read through such a reader.
 GridReader soft_reader(const MapView& map, double finest_cell_m);
-/// `map` as half its log odds, without what searches build.
+/// `map` as half its log odds, without MapView::searches.
 MapView soft_view(const MapView& map);
 /// The feature map as half its log odds.
 FeatureMap softened(FeatureMap features);

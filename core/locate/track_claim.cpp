@@ -18,7 +18,7 @@ void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 void TrackClaim::reject() {
   supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
   if (!is_supported()) confirmed = false;
-  lose_look();
+  forget_look();
 }
 
 void TrackClaim::weigh(double log_ratio) {
@@ -30,14 +30,14 @@ void TrackClaim::confirm(double probability) {
   accept();
   weigh(std::log(probability / (1.0 - probability)));
   confirmed = true;
-  lose_look();
+  forget_look();
 }
 
-void TrackClaim::tell_apart(bool from_all_others) { confirmed = from_all_others; }
+void TrackClaim::set_confirmed(bool others_ruled_out) { confirmed = others_ruled_out; }
 
 void TrackClaim::reopen() {
   confirmed = false;
-  lose_look();
+  forget_look();
 }
 
 void TrackClaim::bear_out(std::int64_t time_us) {
@@ -45,11 +45,11 @@ void TrackClaim::bear_out(std::int64_t time_us) {
   flown_m = 0.0;
 }
 
-void TrackClaim::lose_look() { looked_time_us.reset(); }
+void TrackClaim::forget_look() { looked_time_us.reset(); }
 
-void TrackClaim::fly(double way_m) {
+void TrackClaim::fly(double travelled_m) {
   if (!looked_time_us) flown_m = 0.0;
-  flown_m += way_m;
+  flown_m += travelled_m;
 }
 
 bool TrackClaim::is_supported() const { return supported >= kMinSupport; }

@@ -1,6 +1,6 @@
-// Whether a track may claim the place that it believes in. Particles gather somewhere also where nothing speaks for it,
-// and frames that follow each other show much the same ground, so that what agrees by chance goes on agreeing: a claim
-// wants measurements that bear it out, and a search that has told it from other places.
+// Whether a track may claim the place that it believes in. Particles always gather somewhere, and consecutive frames
+// show much the same ground, so that what agrees by chance goes on agreeing: a claim needs measurements that support
+// it, and a search that ruled out other places.
 #pragma once
 
 #include <cstdint>
@@ -8,52 +8,50 @@
 
 namespace roadfix {
 
-/// So long a place is claimed without an accepted measurement; then it is searched for.
+/// A place is claimed for so long without an accepted measurement; then it is searched for.
 inline constexpr double kStaleAfterS = 60.0;
 
-/// Of the filter (Filter::doubt()): beyond it a place is not claimed, and is searched for.
+/// With more doubt (Filter::doubt()) a place is not claimed, and is searched for.
 inline constexpr double kMaxDoubt = 0.4;
 
 /// What measurements and searches have said of a belief since it began.
 struct TrackClaim {
   static constexpr std::int64_t kMaxSupport = 5;
 
-  /// Balance of the last measurements: up by one when accepted, down when rejected, in [0, kMaxSupport]. Three
-  /// rejections in a row take a claim back.
+  /// Balance of the last measurements: up by one when accepted, down by one when rejected, in [0, kMaxSupport]. Three
+  /// rejections in a row withdraw a claim.
   std::int64_t supported = 0;
-  /// Log of the odds of the belief against chance, a sum that begins anew at 0 (Page's test): it forgets what came
-  /// before a kidnapping, and has an upper bound, so that a track that has long been right does not go on for long when
-  /// it is not any more.
+  /// Log odds of the belief against chance: a sum that is never below 0 (Page's test), so that it forgets what came
+  /// before a kidnapping, and bounded above, so that a track that was right for long notices soon when it no longer is.
   double log_odds = 0.0;
-  /// A search has told the belief from all other places, or where the whole map is too much to search, from those up to
-  /// some kilometres around: a fix, or nearly one at the place that was believed before it. Until measurements speak
-  /// against it.
+  /// A search gave a fix, or nearly one at the place that was believed already, and so ruled out all other places; only
+  /// those within some kilometres where the whole map is too large to search. Holds until measurements contradict it.
   bool confirmed = false;
-  /// Time of the last search around the place that bore it out; nullopt = none since a search found the place,
-  /// something spoke against it or such a search did not bear it out, and nothing is claimed then.
+  /// Time of the last look that bore the place out. nullopt, and nothing is claimed, where there was none since a
+  /// search found the place, something contradicted it, or a look failed to bear it out.
   std::optional<std::int64_t> looked_time_us{};
-  /// The way flown since that search, or where there was none, since the step before.
+  /// Distance flown since that look; if there is none, since the last step.
   double flown_m = 0.0;
 
   void accept();
-  /// Something speaks against the place. A claim that is taken back waits for a search.
+  /// Something contradicts the place. A claim withdrawn for lack of support has to be confirmed again.
   void reject();
   /// `log_ratio`: how much likelier a measurement is under the belief than by chance.
   void weigh(double log_ratio);
-  /// A search gave a fix of this probability, in [0, 1), there. It is yet to be looked around: the next frame tells
-  /// whether the odometry carries the place on rightly.
+  /// A search gave a fix of this probability, in [0, 1), there. A look is still needed: the next frame shows whether
+  /// the odometry carries the place on correctly.
   void confirm(double probability);
 
-  /// A search found the place that was believed, and told it from all others, or could not.
-  void tell_apart(bool from_all_others);
-  /// The belief took other places in, or went over to one: it is to be told from them anew.
+  /// A search found the place that was believed, and ruled out all others or could not.
+  void set_confirmed(bool others_ruled_out);
+  /// The belief now includes other places, or moved to one: they have to be ruled out again.
   void reopen();
 
-  /// A search around the place found it there.
+  /// A look found the vehicle at the place.
   void bear_out(std::int64_t time_us);
-  /// It holds no longer that one did.
-  void lose_look();
-  void fly(double way_m);
+  /// The last look no longer counts.
+  void forget_look();
+  void fly(double travelled_m);
 
   bool is_supported() const;
   /// A hundred to one against chance.

@@ -16,12 +16,12 @@ struct TrackCluster {
   double weight = 0.0;  ///< share of all particles' weight, 0 to 1
   Ellipse ellipse;
   Angle heading_sigma;       ///< 1 sigma
-  double radius95_m = 0.0;   ///< holds the vehicle with 95 %, if it is in the cluster at all
+  double radius95_m = 0.0;   ///< holds the vehicle with 95 %, if it belongs to this cluster at all
   double scale = 1.0;        ///< how many times larger the ground is than the feature maps say, within the scale range
   double scale_sigma = 0.0;  ///< 1 sigma
 };
 
-/// What became of a step's feature map; kRepeated = nothing, since the camera or its link has stopped (LastView).
+/// What a step's feature map was used for; kRepeated = nothing, since the camera or its link has stopped (LastView).
 enum class Measurement { kNone, kSearched, kAccepted, kRejected, kUseless, kRepeated };
 /// "none", "searched" ...: the word for it in answers and files.
 const char* to_string(Measurement measurement);

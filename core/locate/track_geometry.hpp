@@ -11,8 +11,7 @@
 
 namespace roadfix {
 
-/// A circle around all places that the particles hold for possible, which are those with weight; nullopt where it lies
-/// beyond the map.
+/// A circle around all particles with weight; nullopt where it lies off the map.
 std::optional<Prior> prior_around(const MapView& map, const Particles& particles);
 
 /// All poses within this distance and turn of a pose; nullopt where they lie beyond the map.
@@ -22,8 +21,8 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
 /// the modes, since particles move on before they are weighted.
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features);
 
-/// The ellipse and the radius hold the registration error of the map and that of the nadir, which is as much larger as
-/// the ground is than the feature map says.
+/// The ellipse and the radius include the registration error of the map and that of the nadir, which is scaled like the
+/// ground.
 TrackCluster to_geographic(const MapView& map, const Cluster& cluster, double nadir_sigma_m);
 
 }  // namespace roadfix

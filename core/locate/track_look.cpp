@@ -11,14 +11,14 @@ namespace roadfix {
 namespace {
 
 constexpr LookAge kLookEvery{3'000'000, 45.0};
-constexpr int kOpenLooks = 2;              // times as old a look that bore the place out may be
+constexpr int kOpenLooks = 2;              // intervals after which a look that bore the place out is outdated
 constexpr double kLookRadiusM = 60.0;      // less than a block, from which on streets repeat
-constexpr double kMaxLookRadiusM = 150.0;  // where as much was flown since the last look: odometry may be all wrong
+constexpr double kMaxLookRadiusM = 150.0;  // after as long a flight since the last look: odometry may be all wrong
 const Angle kLookHeading = Angle::degrees(15.0);
-const Angle kNearHeading = Angle::degrees(3.0);  // as kNearM below
+const Angle kNearHeading = Angle::degrees(3.0);  // corresponds to kNearM below
 const Angle kMaxNearHeading = Angle::degrees(6.0);
 
-constexpr double kSigmas = 2.0;  // of the belief, within which it may be off
+constexpr double kSigmas = 2.0;  // of the belief, within which it counts as right
 
 FeatureMap at_scale_of(const Cluster& belief, const FeatureMap& frame) {
   return resampled(frame, frame.cell_m, std::exp(belief.log_scale));
@@ -37,10 +37,10 @@ double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zo
 }
 
 Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
-  constexpr double kMinProbability = 0.5;  // what chance explains has no more
-  constexpr double kMaxShareBeside = 0.2;  // of the best place's probability
+  constexpr double kMinProbability = 0.5;  // a place that chance explains has no more
+  constexpr double kMaxShareHere = 0.2;    // of the best place's probability, if the vehicle is elsewhere
   constexpr double kNearM = 15.0;
-  constexpr double kMaxNearM = 30.0;  // however wide the belief: all that was searched lies near it then
+  constexpr double kMaxNearM = 30.0;  // for wide beliefs, or all that was searched would be near
   using Outcome = Look::Outcome;
   if (!fix.complete) return Outcome::kOpen;
   const double near_m = std::max(kNearM, kSigmas * belief.sigma_m());
@@ -50,8 +50,8 @@ Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& z
   if (borne_out > kMinProbability) return Outcome::kBorneOut;
   const bool found = fix.status != FixStatus::kNoFix && fix.probability > kMinProbability;
   if (!found) return Outcome::kOpen;
-  const double little = kMaxShareBeside * fix.probability;
-  if (probability_near(fix, belief, zone, near_m, kLookHeading) < little) return Outcome::kBeside;
+  const double little = kMaxShareHere * fix.probability;
+  if (probability_near(fix, belief, zone, near_m, kLookHeading) < little) return Outcome::kElsewhere;
   return probability_near(fix, belief, zone, near_m, turned) < little ? Outcome::kTurned : Outcome::kOpen;
 }
 
@@ -86,7 +86,7 @@ Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap
       search.find(seen, *around, {.looks_beyond_prior = false, .search = {.straight_roads = 1}});
   if (!fix) return {};
   Look look{outcome_of(*fix, belief, map.zone), {}};
-  if (look.outcome == Look::Outcome::kBeside || look.outcome == Look::Outcome::kTurned) {
+  if (look.outcome == Look::Outcome::kElsewhere || look.outcome == Look::Outcome::kTurned) {
     look.places = proposals_of(map, *fix, seen);
     for (Proposal& place : look.places) place.log_scale += belief.log_scale;
   }

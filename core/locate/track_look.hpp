@@ -1,7 +1,7 @@
-// A track that is sure of its place looks around it from time to time, by a search that does not take the odometry's
-// word. Where the odometry is worse than it says, the particles lag behind the vehicle: along a road, or by a block,
-// frames still agree better there than by chance, so that nothing but a comparison with the places beside tells. Only a
-// place that such looks bear out is claimed.
+// A track that is sure of its place looks around it from time to time, by a search that does not trust the odometry. If
+// the odometry is worse than it says, the particles lag behind the vehicle: along a road, or by a block. Frames still
+// agree better there than by chance, so that only a comparison with neighbouring places shows it. Only a place that
+// looks bear out is claimed.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace roadfix {
 
-/// How long ago, and how far back, a look bore the place out.
+/// Time and distance flown since a look bore the place out.
 struct LookAge {
   std::int64_t us = 0;
   double flown_m = 0.0;
@@ -24,19 +24,24 @@ struct LookAge {
   bool is_outdated() const;
 };
 
-/// What a search around a belief says of it.
+/// What a search around a belief found.
 struct Look {
-  enum class Outcome { kBorneOut, kTurned, kBeside, kOpen };  ///< turned: there, with another heading
+  enum class Outcome {
+    kBorneOut,   ///< the vehicle, where it was believed to be
+    kTurned,     ///< the vehicle there, with another heading
+    kElsewhere,  ///< the vehicle at another place nearby
+    kOpen,       ///< none of these for certain
+  };
   Outcome outcome = Outcome::kOpen;
-  std::vector<Proposal> places;  ///< that are likely instead; only of kTurned and kBeside
+  std::vector<Proposal> places;  ///< likely poses, for kTurned and kElsewhere
 };
 
-/// Whether the frame fits better where the vehicle is believed to be if that is turned: a sign, for a look to follow,
-/// that one turn was told wrong.
+/// Whether the frame fits better at the believed position with another heading: a sign, to be followed by a look, that
+/// the odometry told a turn wrong.
 bool fits_better_turned(const MapView& map, const FeatureMap& frame, const Cluster& belief);
 
-/// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. Open where
-/// that lies beyond the map or is too much to search.
+/// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. kOpen if that
+/// lies off the map or is too large to search.
 Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
                  double flown_m);
 

@@ -13,20 +13,19 @@ namespace {
 // air pressure.
 constexpr double kScaleWalkShare = 0.03;
 
-// Of a vehicle that no odometry tells of: so much of its speed, and at least so many m/s, its velocity changes by
-// within a second (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
+// Without odometry the velocity may change by this share of the speed within a second, and by at least so many m/s
+// (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
 constexpr double kManoeuvreShare = 0.5;
 constexpr double kLeastManoeuvreMS = 1.0;
-// It goes on turning for some seconds, and may as well have stopped: of what it turns by then, so much is one sigma.
+// It goes on turning for some seconds, or may have stopped: 1 sigma as a share of the turn.
 constexpr double kTurnLastsS = 3.0;
 constexpr double kTurnDoubt = 0.5;
 
-// 1 sigma per axis of the wind that is learned where the odometry was found wrong, if no stronger one is told: so much
-// of the speed, and at least so many m/s.
+// 1 sigma per axis of the wind that is learned once the odometry was found to be wrong, unless a stronger one was told.
 constexpr double kFoundWindShare = 0.3;
 constexpr double kLeastFoundWindMS = 5.0;
-constexpr double kShortestS = 0.01;  // of a shorter step the times are not known well enough to tell a velocity
-constexpr double kTriedShare = 0.1;  // of the particles, before it is found wrong
+constexpr double kShortestS = 0.01;  // times are not accurate enough to tell the velocity of a shorter step
+constexpr double kTriedShare = 0.1;  // of the particles, that try other drifts while the odometry seems right
 
 }  // namespace
 
@@ -35,14 +34,14 @@ OdometryCovariance StepMotion::odometry_covariance() const {
   return covariance_of(*told_.odometry, told_.seconds / static_cast<double>(1 + told_.lost_steps), vehicle_);
 }
 
-bool StepMotion::covers_ground() const { return wind().is_none() && told_.lost_steps == 0; }
+bool StepMotion::odometry_is_complete() const { return wind().is_none() && told_.lost_steps == 0; }
 
 double StepMotion::speed_m_s() const {
   if (learned_.velocity) return std::hypot(learned_.velocity->forward_m_s, learned_.velocity->right_m_s);
   return vehicle_.planar ? std::abs(vehicle_.planar->speed_m_s.mean) : 0.0;
 }
 
-double StepMotion::way_m() const {
+double StepMotion::travelled_m() const {
   if (!told_.odometry) return speed_m_s() * told_.seconds;
   return distance_m(*told_.odometry) * static_cast<double>(1 + told_.lost_steps);
 }
@@ -70,7 +69,7 @@ double StepMotion::move(Filter& filter) {
 
 void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }
 
-/// Where the step before told no motion, the drift of the particles was all of their velocity: they draw a new one.
+/// If the step before told no motion, the drift of the particles was their whole velocity: they draw a new one.
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
@@ -90,7 +89,7 @@ void StepMotion::learn_velocity(const Odometry& odometry) {
   learned_.turn_rate_rad_s = odometry.turn.radians() / told_.seconds;
 }
 
-/// Of this step. The doubts of steps add up to that of the whole turn.
+/// Of this step. The variances of steps add up to that of the whole turn.
 Gaussian StepMotion::turn_goes_on() const {
   const auto turned_by = [&](double seconds) {
     return -learned_.turn_rate_rad_s * kTurnLastsS * std::expm1(-seconds / kTurnLastsS);
@@ -100,7 +99,7 @@ Gaussian StepMotion::turn_goes_on() const {
   return {after - before, kTurnDoubt * std::sqrt(after * after - before * before)};
 }
 
-/// On with the velocity and the turn that odometry told, if any did.
+/// On with the velocity and turn rate of the last odometry, if there was any.
 double StepMotion::coast(Filter& filter, bool begins) {
   ConstantVelocityMotion motion{told_.seconds};
   motion.velocity_walk = std::max(kLeastManoeuvreMS, kManoeuvreShare * speed_m_s());

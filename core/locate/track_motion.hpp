@@ -1,5 +1,5 @@
-// How the vehicle of a track moves in a step: by odometry, by equation (4), or as it flew before. Knows neither the map
-// nor what frames show.
+// How the vehicle of a track moves in a step: by its odometry, by equation (4), or on with its last velocity. Knows
+// neither the map nor what frames show.
 #pragma once
 
 #include <cstdint>
@@ -15,16 +15,16 @@ struct ToldMotion {
   std::optional<Odometry> odometry;
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   double seconds = 0.0;
-  std::int64_t lost_steps = 0;  ///< between the two, of whose motion nothing is known
+  std::int64_t lost_steps = 0;  ///< between the two; their motion is unknown
 };
 
 /// What a track keeps of the motion from step to step.
 struct LearnedMotion {
   std::optional<BodyVelocity> velocity;  ///< that the last odometry told, seen from the pose at its end
   double turn_rate_rad_s = 0.0;          ///< likewise, clockwise
-  bool odometry_is_wrong = false;        ///< was found so: a wind is learned though none was told
-  bool coasts = false;     ///< the last step told no motion: the drift of the particles is all of their velocity
-  double coasted_s = 0.0;  ///< since motion was told
+  bool odometry_is_wrong = false;        ///< was found to be: a wind is learned though none was told
+  bool coasts = false;     ///< the last step told no motion: the drift of the particles is their whole velocity
+  double coasted_s = 0.0;  ///< since the last step that told the motion
   friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;
 };
 
@@ -37,26 +37,26 @@ class StepMotion {
 
   const ToldMotion& told() const { return told_; }
   const LearnedMotion& learned() const { return learned_; }
-  /// Of the odometry, which was told, and without that of lost steps.
+  /// Of this step's odometry, which must be there, without that of lost steps.
   OdometryCovariance odometry_covariance() const;
-  /// Whether odometry, if any is told, is the whole motion over the ground: no wind, no lost steps.
-  bool covers_ground() const;
-  /// That the last odometry told; where none is to be expected, that of the vehicle.
+  /// Whether odometry, if there is any, is the whole motion over the ground: no wind, no lost steps.
+  bool odometry_is_complete() const;
+  /// By the last odometry; before there was any, the planar speed if that is given, else 0.
   double speed_m_s() const;
-  /// Of the step, by the odometry or that speed.
-  double way_m() const;
-  /// Where particles live, with the drift of new ones.
+  /// Distance of this step and the lost ones, by odometry or speed_m_s().
+  double travelled_m() const;
+  /// Where particles live, and the drift of new ones.
   AcceptanceRegion region() const;
 
   /// Moves the particles; returns what Filter::predict() does. Throws as OdometryMotion does.
   double move(Filter& filter);
-  /// The belief is thrown away, and what was learned with it; a drift that was found stays.
+  /// Forgets what was learned, but for odometry found to be wrong.
   void begin_anew();
 
-  /// Some particles try other velocities, unless the drift is open anyway (wind, no odometry). Should the odometry be
-  /// worse than it says, frames tell them from the others before the belief is left behind.
+  /// Gives some particles another velocity, unless drift is learned anyway (wind, no odometry). If the odometry is
+  /// worse than it says, frames will favour those before the belief is left behind.
   void try_drifts(Filter& filter) const;
-  /// The odometry was found wrong, where there is one: from now on its drift is learned.
+  /// The odometry, if there is any, was found to be wrong: from now on its drift is learned.
   void learn_drift(Filter& filter);
 
  private:

@@ -7,7 +7,7 @@
 namespace roadfix {
 namespace {
 
-constexpr double kUntoldScaleRange = 0.15;  // of altitudes that are taken for exact, before a fix is believed
+constexpr double kUntoldScaleRange = 0.15;  // tried before a fix is believed, though the altitude is said to be exact
 
 }  // namespace
 

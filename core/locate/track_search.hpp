@@ -1,5 +1,5 @@
-// The searches of a track: fixes within what the track may search and the step may take. Stateless: what a search found
-// becomes of the track is up to its step.
+// The searches of a track: fixes within the area that the track may search and the time that the step may take.
+// Stateless: the step decides what follows from them.
 #pragma once
 
 #include <optional>
@@ -21,13 +21,13 @@ class TrackSearch {
   std::optional<Fix> find(const FeatureMap& features, const Prior& prior, FixOptions options,
                           double time_share = 1.0) const;
 
-  /// Whether the best place of `fix`, found for `features`, has no rival where the ground may be of another size than
-  /// they say: within `prior`, or where that outlasts half of the time that is left, within kAroundM of the place. From
-  /// a wrong altitude the streets of one quarter look like those of another whose blocks are as much smaller, and no
-  /// frame contradicts it.
+  /// Whether the best place of `fix`, found for `features`, has no rival even if the scale of `features` is wrong:
+  /// within `prior` or, if that takes more than half of the remaining time, within kAroundM of the place. From a wrong
+  /// altitude the streets of one quarter look like those of another with smaller blocks, and no later frame contradicts
+  /// that.
   bool holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const;
 
-  /// Of the circle that is searched where the whole map is too much, or takes too long.
+  /// Radius of the circle that is searched where the whole map is too large, or takes too long.
   static constexpr double kAroundM = 3000.0;
 
  private:

@@ -17,14 +17,14 @@ struct Wind {
   double sigma_m_s = 0.0;  ///< 1 sigma of the first wind, per axis
 
   /// Growth of that sigma, m/s per square root of a second: a wind changes by its own size in 40 minutes. A filter that
-  /// takes it for constant, or for nothing at first, comes to be sure of a wrong one.
+  /// took it for constant, or for zero at first, would become sure of a wrong one.
   double walk() const { return sigma_m_s / 50.0; }
   bool is_none() const { return sigma_m_s == 0.0; }
 };
 
-/// Takes the place of what a step does not tell.
+/// What is assumed of a step that does not tell it.
 struct VehicleNoise {
-  /// Where given, steps without odometry follow equation (4) with these; else the velocity goes on as it was, and may
+  /// If given, steps without odometry follow equation (4) with these; else the vehicle keeps its velocity, which may
   /// change by half of itself within a second.
   struct Planar {
     Gaussian speed_m_s;
@@ -37,8 +37,8 @@ struct VehicleNoise {
   /// The ground in the feature maps may be smaller by this share, or larger by as much, by an error of the altitude
   /// that stays much the same from step to step; in [0, kMaxScaleRange].
   double scale_range = 0.0;
-  /// Of all feature maps, in place of what they say (FeatureMap::nadir_sigma_m). Part of the standard deviations of the
-  /// position, since a camera that is mounted askew errs alike in all frames.
+  /// Replaces FeatureMap::nadir_sigma_m of all feature maps. Part of the stated accuracy of the position, and not
+  /// averaged over frames, since a camera that is mounted askew errs alike in all of them.
   std::optional<double> nadir_sigma_m;
 };
 
@@ -47,20 +47,20 @@ enum class TrackStart { kSearch, kUniform };
 struct TrackSettings {
   Prior prior;  ///< where the vehicle may be at the first step
   TrackStart start = TrackStart::kSearch;
-  /// Spreads and searches anew when the measurements speak against the belief, and searches before the first claim
-  /// where no search has told it from other places (see TrackClaim). Without it a track converges by its particles
+  /// Spreads the particles and searches again when measurements contradict the belief, and searches before the first
+  /// claim if no search has ruled out other places (see TrackClaim). Without it a track converges by its particles
   /// alone.
   bool recovers = true;
   FilterOptions filter;
   MeasurementModel measurement_model;
   VehicleNoise vehicle;
   std::uint64_t seed = 1;
-  /// So far beyond the rim of the map a vehicle is still followed: held back at the rim, a belief that is sure of
-  /// itself would be pushed along it, away from a vehicle that flies a curve outside. No particle is drawn there. The
-  /// circle that is searched around a belief (TrackSearch::kAroundM) meets the map from wherever that is.
+  /// How far beyond the map's rim a vehicle is still followed: held back at the rim, a confident belief would be pushed
+  /// along it, away from a vehicle that flies a curve outside. No particles are drawn there. Small enough for the
+  /// circle searched around a belief (TrackSearch::kAroundM) to meet the map.
   double beyond_map_m = 1000.0;
-  /// Of the prior where the start is searched for. Where a uniform start was more, recovery looks around the last
-  /// place.
+  /// Limit of the prior of TrackStart::kSearch, and of all later searches: over larger maps, recovery searches around
+  /// the last place.
   std::optional<double> max_search_km2 = 2000.0;
   std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< of its searches; never nullptr
 

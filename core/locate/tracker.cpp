@@ -38,7 +38,7 @@ void require_in_order(const TrackerState& before, const StepInput& step) {
   }
 }
 
-/// Told in another unit, times would let a claim outlast all its limits.
+/// With times in another unit a claim would outlast all its limits.
 void require_possible_speed(const TrackerState& before, const StepInput& step) {
   constexpr double kFastestMS = 1000.0;
   constexpr double kRoundingM = 1.0;  // of positions taken at nearly the same time
@@ -64,7 +64,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
       start_(region_of(map_, settings_.prior)),
       region_(region_of_flight(map_, settings_)) {
   assert(std::numbers::sqrt2 * settings_.beyond_map_m < TrackSearch::kAroundM);
-  // Particles alone would not find the vehicle there either, and each step would read the whole map for them.
+  // In a larger prior, particles would not find the vehicle by themselves, and each step would read the whole map.
   if (settings_.start == TrackStart::kSearch) require_searchable(start_.area_km2(), settings_.max_search_km2);
 }
 

@@ -1,7 +1,7 @@
 // A flight as a sequence of steps: odometry and feature maps in, pose with covariance out (docs/method.md).
 //
-// A tracker holds what does not change. The state is a value: a step makes a new one from the old, so that a step that
-// fails leaves the track as it was.
+// A tracker holds what does not change during a flight. The state is a value: each step makes a new one from the old,
+// so that a step that fails leaves the track as it was.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,7 @@ struct StepInput {
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
 };
 
-/// Of StepInput.
+/// Identifies a step; see StepInput.
 struct StepStamp {
   std::int64_t sequence = 0;
   std::int64_t time_us = 0;
@@ -37,15 +37,15 @@ struct StepStamp {
 
 struct TrackerState {
   FilterState filter;
-  bool searched = false;          ///< the search of the start has been tried
+  bool searched = false;          ///< the search at the start has been made
   std::optional<StepStamp> last;  ///< the step that led here; nullopt = none yet
   std::int64_t measured = 0;      ///< feature maps so far
   std::int64_t last_search = 0;   ///< `measured` at the last search
   double nadir_sigma_m = 0.0;     ///< of the last feature map
   TrackClaim claim;
   std::optional<std::int64_t> accepted_time_us;  ///< time of the last accepted measurement
-  /// What its next search lays together with the frame of the step. Empty once it has converged, so that what was seen
-  /// before a kidnapping is not laid with what is seen after it.
+  /// Frames that the next search lays around the frame of the step. Empty once the track has converged, so that frames
+  /// from before a kidnapping are never combined with one after it.
   RecentFrames recent;
   LastView last_view;
   LearnedMotion motion;
@@ -72,7 +72,7 @@ class Tracker {
   /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted when
   /// asked to stop, and at the deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
-  /// Thinned to at most `count` poses, every k-th particle; none of those without weight.
+  /// At most `count` poses: every k-th particle, without those of no weight.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;
 
   const MapView& map() const { return map_; }

@@ -170,7 +170,7 @@ class Reader {
 
 bool is_share(double value) { return value >= 0.0 && value <= 1.0; }
 
-bool can_be(const FilterState& filter) {
+bool is_valid(const FilterState& filter) {
   constexpr double kRounding = 1e-6;  // of weights that sum to 1
   const std::vector<double>& weights = filter.particles.weight;
   return std::ranges::all_of(weights, is_share) &&
@@ -179,7 +179,7 @@ bool can_be(const FilterState& filter) {
          filter.slow_fit > 0.0 && is_share(filter.slow_fit) && is_share(filter.fast_fit);
 }
 
-bool can_be(const RecentFrames& recent) {
+bool is_valid(const RecentFrames& recent) {
   return std::ranges::all_of(recent.frames(), [&](const Frame& frame) {
     const FeatureMap& features = frame.placed.features;
     return features.cell_m > 0.0 && features.cell_m == recent.frames().front().placed.features.cell_m &&
@@ -188,17 +188,17 @@ bool can_be(const RecentFrames& recent) {
   });
 }
 
-bool can_be(const TrackClaim& claim) { return claim.supported <= TrackClaim::kMaxSupport && claim.log_odds >= 0.0; }
+bool is_valid(const TrackClaim& claim) { return claim.supported <= TrackClaim::kMaxSupport && claim.log_odds >= 0.0; }
 
-bool can_be(const LastView& view) {
-  const auto has_come = [](const SeenView& seen) { return seen.moved_m >= 0.0 && seen.turned_rad >= 0.0; };
-  return std::ranges::all_of(view.seen, has_come) && view.earlier.frames().size() <= 1 && can_be(view.earlier);
+bool is_valid(const LastView& view) {
+  const auto is_valid_view = [](const SeenView& seen) { return seen.moved_m >= 0.0 && seen.turned_rad >= 0.0; };
+  return std::ranges::all_of(view.seen, is_valid_view) && view.earlier.frames().size() <= 1 && is_valid(view.earlier);
 }
 
-bool can_be(const TrackerState& state) {
+bool is_valid(const TrackerState& state) {
   return state.measured - 1 <= state.last->sequence && state.last_search <= state.measured &&
-         state.nadir_sigma_m >= 0.0 && can_be(state.claim) && can_be(state.last_view) && can_be(state.filter) &&
-         can_be(state.recent);
+         state.nadir_sigma_m >= 0.0 && is_valid(state.claim) && is_valid(state.last_view) && is_valid(state.filter) &&
+         is_valid(state.recent);
 }
 
 }  // namespace
@@ -220,7 +220,7 @@ TrackerState tracker_state_of(std::span<const std::byte> bytes) {
   state.last.emplace();
   pass_members(reader, state);
   if (!reader.is_at_end()) refuse("goes on beyond its end");
-  if (!can_be(state)) refuse("holds values that no track has");
+  if (!is_valid(state)) refuse("holds values that no track has");
   return state;
 }
 

@@ -1,4 +1,4 @@
-// What a step makes of searches: where the track begins, and where its belief is told from other places or found again.
+// What a step does with searches: begin the track, rule out other places than the belief, and find the vehicle again.
 #include <algorithm>
 #include <cstdint>
 
@@ -11,13 +11,12 @@ namespace roadfix {
 namespace {
 
 constexpr std::int64_t kMeasurementsBetweenSearches = 10;
-constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, where a claim waits for a search
-constexpr double kProbabilityForClaim = 0.95;         // of a search at the place that the measurements bear out
+constexpr std::int64_t kMeasurementsBeforeClaim = 5;  // likewise, while a claim waits for a search
+constexpr double kProbabilityForClaim = 0.95;         // of a search that found the believed place
 constexpr double kInjectedShare = 0.3;
 constexpr double kMovedShare = 0.8;   // of the particles, to where a look found the vehicle
 constexpr double kMaxFixShare = 0.9;  // of the particles; the others begin anew
-// Of the time that a step has left, for a search over the whole map: what that does not find in time, one around the
-// belief has to, and what either finds has to be told from other places.
+// Of the time that a step has left. The rest is for the check at other scales.
 constexpr double kWholeMapTimeShare = 0.3;
 constexpr double kAroundTimeShare = 0.5;
 
@@ -31,7 +30,7 @@ double probability_of_all(const Fix& fix) {
 
 bool Tracker::Step::may_search() const { return settings_.recovers || settings_.start == TrackStart::kSearch; }
 
-/// The prior as it was given holds for the first step only. False where the particles stay as they are.
+/// The prior of the track holds for the first step only. False if the particles were left as they are.
 bool Tracker::Step::start_by_search() {
   const std::optional<Prior> prior = is_first() ? settings_.prior : prior_around(map_, filter_.particles());
   if (!prior) return false;
@@ -64,9 +63,9 @@ void Tracker::Step::take(const Look& look, LookAge last) {
       motion_.try_drifts(filter_);
       break;
     case Look::Outcome::kOpen:
-      if (last.is_outdated()) state_.claim.lose_look();
+      if (last.is_outdated()) state_.claim.forget_look();
       break;
-    case Look::Outcome::kBeside:
+    case Look::Outcome::kElsewhere:
       motion_.learn_drift(filter_);
       [[fallthrough]];
     case Look::Outcome::kTurned:
@@ -81,7 +80,7 @@ void Tracker::Step::search_if_due() {
 }
 
 bool Tracker::Step::wants_search() const {
-  // Nothing has spoken for the belief for long, be it that nothing could.
+  // Nothing has supported the belief for long, be it that nothing could.
   const bool stale = state_.since_accepted_s(input_.time_us).value_or(kStaleAfterS) >= kStaleAfterS;
   if (filter_.doubt() > kMaxDoubt || stale) return true;
   return state_.claim.waits_for_search() ||
@@ -98,10 +97,13 @@ void Tracker::Step::recover() {
     fix = search_within(prior, seen, kAroundTimeShare);
   }
   if (!fix || fix->modes.empty()) return;
-  const bool agrees = is_same_place(on_grid(fix->modes.front().pose, map_.zone), believed);
-  if (agrees && fix->probability >= kProbabilityForClaim) {
-    state_.claim.tell_apart(search_.holds_at_other_scales(*fix, seen, prior));
-  } else if (fix->status != FixStatus::kFix || !search_.holds_at_other_scales(*fix, seen, prior)) {
+  const bool confirms =
+      is_same_place(on_grid(fix->modes.front().pose, map_.zone), believed) && fix->probability >= kProbabilityForClaim;
+  const bool is_sure = confirms || fix->status == FixStatus::kFix;
+  const bool holds = is_sure && search_.holds_at_other_scales(*fix, seen, prior);
+  if (confirms) {
+    state_.claim.set_confirmed(holds);
+  } else if (!holds) {
     filter_.inject(proposals_of(map_, *fix, *features_), kInjectedShare);
     state_.claim.reopen();
   } else {
@@ -119,14 +121,14 @@ void Tracker::Step::confirm(const Fix& fix) {
   if (settings_.recovers) motion_.try_drifts(filter_);
 }
 
-/// nullopt also where the time was over first: a flight goes on without a search, as it would be stuck with a map that
-/// takes longer. At its beginning that is an error, as a smaller prior helps.
+/// nullopt also if time ran out: a flight goes on without the search, or a map that takes longer would stop it. At the
+/// start of a track that is an error instead: a smaller prior helps.
 std::optional<Fix> Tracker::Step::search_within(const Prior& prior, const FeatureMap& seen, double time_share) {
   state_.last_search = state_.measured;
   std::optional<Fix> fix = search_.find(
       seen, prior, {.own_frame = features_, .search = {.scale_range = settings_.vehicle.scale_range}}, time_share);
   if (!fix || fix->complete) return fix;
-  // What it has depends on the machine, and a track must come out the same.
+  // What an incomplete search has depends on the machine's speed, and tracks must be repeatable.
   if (is_first()) throw Interrupted("search-time-limit", fix->explanation);
   return std::nullopt;
 }

@@ -12,12 +12,12 @@
 namespace roadfix {
 namespace {
 
-// 1 sigma per axis by which a belief spreads where a measurement speaks against it: the motion may have been worse than
-// was told.
+// 1 sigma per axis by which a belief spreads when a measurement contradicts it: the motion may have been less accurate
+// than was told.
 constexpr double kWidenedM = 4.0;
 
-constexpr double kLongestGapS = 600.0;  // after it the belief is thrown away
-constexpr double kLeastKept = 0.99;     // of the weight: what leaves the region may be where the vehicle is
+constexpr double kLongestGapS = 600.0;  // after a longer one the belief is thrown away
+constexpr double kLeastKept = 0.99;     // of the weight: the vehicle may be among the particles that left the region
 
 ToldMotion told_motion(const TrackerState& before, const StepInput& input) {
   if (!before.last) return {input.odometry, input.covariance, 0.0, 0};
@@ -43,7 +43,7 @@ Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const St
 StepResult Tracker::Step::run() {
   if (input_.features) {
     features_ = in_cells_of(map_, *input_.features);
-    // What the particles do not know is added to what they say, once.
+    // The particles do not include this error; it is added to the answer, once.
     state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
   }
   begin_or_move();
@@ -52,8 +52,8 @@ StepResult Tracker::Step::run() {
   state_.motion = motion_.learned();
   const std::vector<Cluster> clusters = clusters_of(filter_.particles());
   outcome_.converged = has_converged(settings_, state_, clusters.front(), outcome_.measurement, filter_.doubt());
-  // Particles that part and gather again bring no claim back that ended unseen.
-  if (saw_nothing() && !outcome_.converged) state_.claim.lose_look();
+  // A claim that ended while nothing was seen does not come back when the particles happen to gather again.
+  if (saw_nothing() && !outcome_.converged) state_.claim.forget_look();
   if (outcome_.converged) state_.recent.clear();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, clusters, outcome_);
   state_.filter = filter_.state();
@@ -70,7 +70,7 @@ void Tracker::Step::begin_or_move() {
 }
 
 void Tracker::Step::move() {
-  state_.last_view.move(input_.odometry, motion_.covers_ground());
+  state_.last_view.move(input_.odometry, motion_.odometry_is_complete());
   if (motion_.told().seconds > kLongestGapS) {
     filter_.start_uniformly(tracker_.region_.poses);
     motion_.begin_anew();
@@ -84,9 +84,9 @@ void Tracker::Step::move() {
   } else if (kept < kLeastKept) {
     state_.claim = {};
   }
-  state_.claim.fly(motion_.way_m());
-  // Only where the odometry tells how the ground below goes on, and the frames how large it is.
-  if (input_.odometry && motion_.covers_ground() && settings_.vehicle.scale_range <= 0.0) {
+  state_.claim.fly(motion_.travelled_m());
+  // Frames can be laid together only if the odometry is the motion over the ground, and their scale is known.
+  if (input_.odometry && motion_.odometry_is_complete() && settings_.vehicle.scale_range <= 0.0) {
     state_.recent.move(*input_.odometry, motion_.odometry_covariance());
   } else {
     state_.recent.clear();
@@ -109,14 +109,14 @@ ParticleMatches Tracker::Step::matches(const MapView& map, const FeatureMap& fea
                          limits_.deadline.stop());
 }
 
-/// Neither the frame nor the ground that it is believed to be of has roads (a lake).
+/// Neither the frame nor the ground below the belief has roads (a lake).
 bool Tracker::Step::is_over_bare_ground() const {
   constexpr double kMinShareWithRoads = 0.5;
   return settings_.measurement_model.kind != LikelihoodKind::kEquation7 && !shows_roads(*features_) &&
          share_with_roads(filter_.particles(), matches(map_, *features_)) < kMinShareWithRoads;
 }
 
-/// The correlation is that of what a search compares; equation (7) speaks of probabilities.
+/// The correlation is over half the log odds, as in a search; equation (7) is over probabilities.
 std::optional<std::vector<double>> Tracker::Step::log_likelihoods() const {
   if (is_over_bare_ground()) return std::nullopt;
   const MeasurementModel& model = settings_.measurement_model;
@@ -158,7 +158,7 @@ void Tracker::Step::weigh(std::span<const double> log_likelihoods) {
   if (!is_same_place(heaviest_of(filter_.particles()).mean, believed)) state_.claim.reopen();
 }
 
-/// No frame, none that says anything of the place, or none that is new.
+/// There was no frame, it said nothing about the place, or it was not new.
 bool Tracker::Step::saw_nothing() const {
   return outcome_.measurement == Measurement::kNone || outcome_.measurement == Measurement::kUseless ||
          outcome_.measurement == Measurement::kRepeated;

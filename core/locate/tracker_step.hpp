@@ -1,7 +1,7 @@
-// One step of a track on its way: the belief is moved, weighted by what was seen, and searched for where that is due.
+// One step of a track: the belief is moved, weighted by what was seen, and searched for where that is due.
 //
-// Only the step changes a track. What it is told comes from parts that know nothing of tracks: StepMotion moves the
-// particles, log_likelihoods_of() weights them, TrackSearch and look_around() find places.
+// Only the step changes a track. It uses parts that know nothing of the track's state: StepMotion moves the particles,
+// log_likelihoods_of() weights them, TrackSearch and look_around() find places.
 #pragma once
 
 #include <optional>
@@ -19,7 +19,7 @@ namespace roadfix {
 
 class Tracker::Step {
  public:
-  /// `input` comes after `before`. Refers to all but `before`.
+  /// `input` is possible after `before` (require_possible()). All but `before` must outlive this.
   Step(const Tracker& tracker, const TrackerState& before, const StepInput& input, const StepLimits& limits);
 
   /// Once. Throws as Tracker::advance does.

@@ -69,11 +69,11 @@ TEST(TrackClaim, OutweighsChanceFromAHundredToOne) {
 
 TEST(TrackClaim, WaitsForASearchOnceItOutweighsChanceUntilOneTellsItApart) {
   TrackClaim claim;
-  claim.tell_apart(true);
+  claim.set_confirmed(true);
   EXPECT_FALSE(claim.is_told_apart() || claim.waits_for_search()) << "it is no more than chance";
   claim.weigh(kHundredToOne);
   EXPECT_TRUE(claim.is_told_apart());
-  claim.tell_apart(false);
+  claim.set_confirmed(false);
   EXPECT_FALSE(claim.is_told_apart());
   EXPECT_TRUE(claim.waits_for_search());
 }

@@ -41,13 +41,13 @@ TEST_F(TrackLook, BearsOutAPlaceThatIsRight) {
 
 TEST_F(TrackLook, FindsTheVehicleBesideAndFartherAwayTheFartherItFlew) {
   const Look near = look_from(beside(45.0));
-  ASSERT_EQ(near.outcome, Look::Outcome::kBeside);
+  ASSERT_EQ(near.outcome, Look::Outcome::kElsewhere);
   EXPECT_LT(distance_m(near.places.at(0).mean.position, truth_.position), 5.0);
 
   const Look flown_little = look_from(beside(110.0));
   EXPECT_NE(flown_little.outcome, Look::Outcome::kBorneOut);
   const Look flown_far = look_from(beside(110.0), 140.0);
-  ASSERT_EQ(flown_far.outcome, Look::Outcome::kBeside);
+  ASSERT_EQ(flown_far.outcome, Look::Outcome::kElsewhere);
   EXPECT_LT(distance_m(flown_far.places.at(0).mean.position, truth_.position), 5.0);
 }
 
@@ -113,7 +113,7 @@ TEST_F(TrackLook, FindsTheVehicleBesideAtTheScaleThatIsBelieved) {
   FeatureMap frame = testing::observed_at(map_, truth_, 128, 128, 2.0 * std::exp(0.1), {0.15, 0.15}, random);
   frame.cell_m = 2.0;
   const Look look = look_around(search_, view_, frame, belief, 0.0);
-  ASSERT_EQ(look.outcome, Look::Outcome::kBeside);
+  ASSERT_EQ(look.outcome, Look::Outcome::kElsewhere);
   EXPECT_LT(distance_m(look.places.at(0).mean.position, truth_.position), 5.0);
   EXPECT_NEAR(look.places[0].log_scale, 0.1, 0.01);
 }

@@ -57,7 +57,7 @@ TEST(StepMotion, CountsLostStepsAsLikeThisOne) {
   Filter filter = filter_at(motion, {{500.0, 500.0}, Angle()});
   motion.move(filter);
   EXPECT_EQ(motion.learned().velocity, (BodyVelocity{10.0, 0.0}));
-  EXPECT_FALSE(motion.covers_ground());
+  EXPECT_FALSE(motion.odometry_is_complete());
 }
 
 /// By how much particles turn, mean and deviation, when a vehicle that turned so fast tells no motion any more.
@@ -117,11 +117,11 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
   const VehicleNoise vehicle;
   StepMotion flown(vehicle, kFlight, {Odometry{20.0, 0.0, {}}, {}, 1.0}, kFlewAt20MS);
   Filter filter = filter_at(flown, {{500.0, 500.0}, Angle()});
-  EXPECT_TRUE(flown.covers_ground());
+  EXPECT_TRUE(flown.odometry_is_complete());
   flown.learn_drift(filter);
   EXPECT_TRUE(flown.learned().odometry_is_wrong);
   EXPECT_EQ(flown.region().drift_sigma_m_s, 6.0) << "three tenths of the speed";
-  EXPECT_FALSE(flown.covers_ground());
+  EXPECT_FALSE(flown.odometry_is_complete());
 
   StepMotion coasting(vehicle, kFlight, {{}, {}, 1.0}, kFlewAt20MS);
   const Particles before = filter.particles();
@@ -133,10 +133,12 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
 
 TEST(StepMotion, TellsTheWayOfAStep) {
   const VehicleNoise vehicle;
-  const auto way_m = [&](const ToldMotion& told) { return StepMotion(vehicle, kFlight, told, kFlewAt20MS).way_m(); };
-  EXPECT_DOUBLE_EQ(way_m({Odometry{3.0, -4.0, {}}, {}, 1.0}), 5.0);
-  EXPECT_DOUBLE_EQ(way_m({Odometry{3.0, -4.0, {}}, {}, 1.0, 2}), 15.0) << "two steps of the same kind were lost";
-  EXPECT_DOUBLE_EQ(way_m({{}, {}, 2.5}), 50.0) << "on as it flew";
+  const auto travelled_m = [&](const ToldMotion& told) {
+    return StepMotion(vehicle, kFlight, told, kFlewAt20MS).travelled_m();
+  };
+  EXPECT_DOUBLE_EQ(travelled_m({Odometry{3.0, -4.0, {}}, {}, 1.0}), 5.0);
+  EXPECT_DOUBLE_EQ(travelled_m({Odometry{3.0, -4.0, {}}, {}, 1.0, 2}), 15.0) << "two steps of the same kind were lost";
+  EXPECT_DOUBLE_EQ(travelled_m({{}, {}, 2.5}), 50.0) << "on as it flew";
 }
 
 }  // namespace

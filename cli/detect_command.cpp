@@ -87,7 +87,7 @@ Picture read_picture(const DetectOptions& options, const std::string& image, con
   require_not_empty(image);
   const UtmZone zone = zone_of_image(image);
   Orthoimage ortho = read_orthoimage(image, zone);
-  return {{rectified(std::move(ortho.image))}, Place{zone, ortho.north_west}};
+  return {{vertical_view(std::move(ortho.image))}, Place{zone, ortho.north_west}};
 }
 
 /// World file and reference system beside the PNG, as GDAL and QGIS look for them.

@@ -139,7 +139,7 @@ DrawnQueries from_imagery(const QuerySet& set, const MapView& map, const QueryDr
   const PoseSampling sampling{without(ortho.box(), set.exclude), set.footprint,
                               [&](GridPoint p) { return in_imagery(p) && in_map(p); }};
   const auto show = [&](const GridPose& pose, Random& /*unused*/, Query& query) {
-    query.view = std::make_shared<GroundView>(rectified(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m)));
+    query.view = std::make_shared<GroundView>(vertical_view(cut_out(ortho, pose, set.footprint, ortho.image.gsd_m)));
   };
   return at_poses(sampling, zone, set.path.stem().string(), show, set, map, drawing);
 }

@@ -55,7 +55,7 @@ class ImagingSensor : public Sensor {
 
   Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
     const GroundImage frame = camera_.take(camera_.aim(pose, scale, random));
-    return {detect_features(detector_, rectified(frame), camera_.cell_m(), kDetectorSeed), {}};
+    return {detect_features(detector_, vertical_view(frame), camera_.cell_m(), kDetectorSeed), {}};
   }
 
   bool shows(GridPoint point) const override { return camera_.shows(point); }

@@ -1,4 +1,4 @@
-// Ground that a picture does not show, whatever it says of itself: areas without any contrast.
+// Areas without any contrast, which count as not seen even if the picture calls them observed.
 //
 // No sensor sees 16 m of ground in one colour. Such areas are painted (the collar of an orthophoto, the border of a
 // rectified frame), saturated, or drawn by the maker of a base map. A detector would have to guess there, and its guess
@@ -9,11 +9,11 @@
 
 namespace roadfix {
 
-/// Side of the squares, of at least 16 pixels too, in which something differs where ground was seen.
+/// Side of the squares in which seen ground always varies; at least 16 pixels.
 inline constexpr double kBlankSideM = 16.0;
 
-/// Marks as not observed all squares of that side, at least half of which counted as observed, in which no channel
-/// varies by more than one level, and a quarter of a side around them, which codecs blur. Their corners lie on
+/// Marks squares of that side as not observed if at least half of their pixels were observed and no channel varies by
+/// more than one level, together with a quarter of a side around them, which codecs blur. Squares are tried at
 /// multiples of a quarter of a side.
 void exclude_blank(GroundImage& image);
 

@@ -1,4 +1,4 @@
-// Feature maps as pictures: cells as grey and alpha, and beside them what the cells cannot say of themselves.
+// Feature maps as pictures: cells as grey and alpha, and their scale and nadir as text.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace roadfix {
 
-/// What a feature map says beside its cells (FeatureMap has the meanings).
+/// What a feature map says of itself in addition to its cells (see FeatureMap).
 struct FeatureMapScale {
   double cell_m = 1.0;
   GridGeometry::CellPosition nadir;
@@ -41,8 +41,8 @@ struct ToldScale {
   std::optional<double> nadir_row;
 };
 
-/// As the picture says or, where it does not, as is told, with the nadir in the middle where that is not; one of them
-/// tells the cell size. Throws InvalidInput where both tell something and differ: "cell-size-contradictory",
+/// With the scale of the picture or, if it has none, as told, with the nadir in the middle unless told; one of the two
+/// must give the cell size. Throws InvalidInput if both give a value and differ: "cell-size-contradictory",
 /// "nadir-contradictory".
 FeatureMap feature_map_of(FeatureMapPicture picture, const ToldScale& told);
 

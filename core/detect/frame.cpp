@@ -27,7 +27,7 @@ void require_roads_visible(double gsd_m) {
 }
 
 GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels) {
-  // Farther away ground is seen too flat to tell a road.
+  // Farther away the angle is too flat to see roads.
   constexpr double kFarthestGroundM = 3000.0;
   constexpr double kFarthestHeights = 5.0;
   const double nominal_m = nominal_gsd_m(view, frame.pixels.size());
@@ -39,7 +39,7 @@ GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetec
     const double farthest_m = std::min(kFarthestGroundM, kFarthestHeights * camera->agl_m);
     seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_m, max_pixels});
   } else {
-    seen = rectified({std::move(frame.pixels), std::move(frame.observed), nominal_m});
+    seen = vertical_view({std::move(frame.pixels), std::move(frame.observed), nominal_m});
   }
   exclude_blank(seen.image);
   return seen;
@@ -55,7 +55,7 @@ FeatureMap detect_features(const RoadDetector& detector, const GroundView& view,
           view.nadir_heading_sigma};
 }
 
-GroundView rectified(GroundImage image) {
+GroundView vertical_view(GroundImage image) {
   const cv::Point2d centre(image.pixels.cols / 2.0, image.pixels.rows / 2.0);
   return {std::move(image), centre};
 }

@@ -12,17 +12,16 @@
 
 namespace roadfix {
 
-/// Pixels wider than most roads do not show them, and a picture of such pixels is mostly a mistaken number.
+/// Pixels wider than most roads do not show them; such a number is mostly a mistake.
 inline constexpr double kCoarsestGsdM = 5.0;
-/// Finer ones are a mistaken number as well: a large frame of them shows less than a road is wide, and detectors need
-/// room for a whole pixel of their own around it.
+/// Finer pixels are mostly a mistake as well: even a large frame of them would show less ground than a road is wide.
 inline constexpr double kFinestGsdM = 0.001;
 /// Throws InvalidInput ("frame-too-coarse", "frame-too-fine") beyond these.
 void require_roads_visible(double gsd_m);
 
-/// What the frame shows of the ground. Of a camera: rectify() up to five times its height from the nadir point, and
-/// 3 km, farther than which ground is seen too flat to tell a road, in pixels that the detector makes use of. A painted
-/// border (painted_border.hpp) and blank areas (blank_ground.hpp) were not seen. Throws what rectify() and
+/// The ground that the frame shows. Frames of a camera are rectified in pixels as fine as the detector can use, up to
+/// five times the camera's height and 3 km from the nadir point: beyond, ground is seen at too flat an angle. A painted
+/// border (painted_border.hpp) and blank areas (blank_ground.hpp) count as not seen. Throws what rectify() and
 /// require_roads_visible() do.
 GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels);
 
@@ -30,7 +29,7 @@ GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetec
 FeatureMap detect_features(const RoadDetector& detector, const GroundView& view, double cell_m, std::uint64_t seed,
                            const std::stop_token& stop = {});
 
-/// A frame that is already a metric picture of the ground, seen straight from above.
-GroundView rectified(GroundImage image);
+/// The view of a picture taken straight down, with the nadir in its middle.
+GroundView vertical_view(GroundImage image);
 
 }  // namespace roadfix

@@ -15,7 +15,7 @@ void require_camera(bool condition, const char* field, const char* range) {
   if (!condition) throw InvalidInput("frame-camera", fmt::format("frame: {} must lie in {}", field, range));
 }
 
-/// A frame that was made smaller or cut has another principal point, and mostly one far from its centre.
+/// A frame that was scaled or cropped has another principal point than its calibration, mostly far from the centre.
 void require_in_the_middle(cv::Point2d principal_px, cv::Size frame) {
   const auto far = [](double at, int side) { return !(std::abs(at / side - 0.5) <= 0.25); };
   if (!far(principal_px.x, frame.width) && !far(principal_px.y, frame.height)) return;
@@ -28,10 +28,10 @@ void require_in_the_middle(cv::Point2d principal_px, cv::Size frame) {
 /// Cosine of the angle between the optical axis and straight down.
 double down(const FrameCamera& camera) { return level_from_camera(camera)(2, 2); }
 
-/// The same as far as errors are told of it.
+/// The same, but no less than for the flattest view.
 double steepness(const FrameCamera& camera) { return std::max(down(camera), cos(kFlattestView)); }
 
-/// From the nadir to the ground on the optical axis, in heights: the tangent of that angle.
+/// The tangent of that angle: the distance from the nadir to the ground on the optical axis, in heights.
 double lean(const FrameCamera& camera) {
   const double steep = steepness(camera);
   return std::sqrt(1.0 - steep * steep) / steep;
@@ -89,7 +89,7 @@ std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Point2d ray)
   return cv::Point2d(level[0], level[1]) * (camera.agl_m / level[2]);
 }
 
-/// Gimbals and autopilots that call straight down -90 degrees would be taken at their word and look at the horizon.
+/// Angles of gimbals and autopilots that call straight down -90 degrees would look at the horizon.
 void require_looking_down(const FrameCamera& camera) {
   if (down(camera) >= cos(kFlattestView)) return;
   throw InvalidInput(
@@ -115,7 +115,7 @@ double nadir_sigma_m(const FrameCamera& camera) {
 
 Angle nadir_heading_sigma(const FrameCamera& camera) {
   const double sigma = attitude_sigma(camera).radians();
-  // The lean is no better known than its error, which has two axes.
+  // The lean is known no better than the attitude, whose error has two axes.
   const double turned = sigma * std::hypot(lean(camera), std::numbers::sqrt2 * sigma) / std::numbers::sqrt2;
   return Angle::radians(std::hypot(turned, kTurnOfScale * kHeightSigma));
 }

@@ -22,24 +22,24 @@ inline constexpr Angle kUntoldAttitudeSigma = Angle::degrees(5.0);
 
 /// What is known about the camera when the frame was taken.
 struct FrameCamera {
-  /// One of the two: field of view across the columns of a lens without distortion, in (0, 180) degrees, or focal
-  /// length in pixels.
+  /// Exactly one of the two is given: the field of view across the columns, of a lens without distortion, in (0, 180)
+  /// degrees, or the focal length in pixels.
   std::optional<Angle> horizontal_fov;
   std::optional<double> focal_px;
-  /// With a focal length: where the optical axis meets the frame, in its middle half, as calibrations give it ((0, 0) =
-  /// centre of the first pixel). nullopt = in its centre.
+  /// With a focal length: where the optical axis meets the frame, within its middle half, as calibrations give it
+  /// ((0, 0) = centre of the first pixel). nullopt = at the frame's centre.
   std::optional<cv::Point2d> principal_px;
   LensModel lens = LensModel::kPerspective;
   std::vector<double> distortion;  ///< with a focal length; coefficients of the model, empty = none
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
-  std::optional<Angle> roll;       ///< nullopt = nobody told it; it is only taken to be zero
+  std::optional<Angle> roll;       ///< nullopt = unknown: taken as zero, with a larger error
   std::optional<Angle> pitch;
 
   Angle assumed_roll() const { return roll.value_or(Angle()); }
   Angle assumed_pitch() const { return pitch.value_or(Angle()); }
 };
 
-/// A frame that was rectified already: its pixels are squares on the ground.
+/// Of a frame that was rectified already: its pixels are squares on the ground.
 struct StraightDown {
   double gsd_m = 1.0;
 };
@@ -68,20 +68,18 @@ double nominal_gsd_m(const FrameView& view, cv::Size frame);
 
 /// Relative, 1 sigma: barometers drift, and the ground is not as flat as it is told to be.
 inline constexpr double kHeightSigma = 0.05;
-/// How well the point below the UAV is known among what the frame shows, 1 sigma per axis in metres: the larger sigma
-/// of roll and pitch times the height, more in oblique views, and the height's error times the distance to what is
-/// seen.
+/// Error of the point below the UAV relative to what the frame shows, 1 sigma per axis in metres: the sigma of roll and
+/// pitch times the height, more in oblique views, and the height's relative error times the distance to what is seen.
 double nadir_sigma_m(const FrameCamera& camera);
 
-/// A wrong height turns no road, but roads that do not all fit pull at the pose: by that share of the relative error,
-/// as measured with frames and with roads drawn at random.
+/// A wrong height does not turn roads, but where the scale is off the best pose turns a little: in radians, by this
+/// share of the relative error, as measured with frames and with random roads.
 inline constexpr double kTurnOfScale = 1.0 / 6.0;
 /// How far errors of roll, pitch and height turn the pose at which the frame fits the ground, 1 sigma.
 ///
-/// Errors a and b of roll and pitch, small, shear the ground that is seen. On the optical axis, at an angle t from
-/// straight down, that turns a road by an angle that depends on its direction: from 0 to a tan(t) for the error across
-/// the lean, and up to b tan(t) / 2 to either side for the one along it. Over all directions its mean square is
-/// sigma^2 tan^2(t) / 2.
+/// Small errors a and b of the attitude, across and along the lean, shear the ground as seen. On the optical axis, at
+/// an angle t from straight down, that turns a road by an angle that depends on its direction: by 0 to a tan(t), and by
+/// up to b tan(t) / 2 to either side. The mean square over all directions is sigma^2 tan^2(t) / 2.
 Angle nadir_heading_sigma(const FrameCamera& camera);
 
 }  // namespace roadfix

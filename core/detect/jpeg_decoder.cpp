@@ -93,7 +93,7 @@ cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes, const std::stop_token& 
   reader.errors.output_message = print_nothing;
   reader.jpeg.client_data = &reader;
   if (!read(reader, bytes)) {
-    require_time(stop);
+    require_not_interrupted(stop);
     throw InvalidInput("image-damaged",
                        fmt::format("the JPEG image is damaged or cut off ({})", reader.message.data()));
   }

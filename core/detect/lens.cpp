@@ -35,7 +35,8 @@ Lens::Lens(double focal_px, cv::Point2d principal, LensModel model, std::vector<
   if (!distortion_.empty()) widest_ = widest_ray();
 }
 
-/// Up to where pixels move outwards with their rays, in each of several directions. Ground is not seen flatter.
+/// The longest ray up to which pixels move outwards with their rays, in all directions; at most that of 85 degrees, as
+/// no ground is seen at a flatter angle.
 double Lens::widest_ray() const {
   constexpr int kDirections = 16;
   constexpr int kSteps = 340;
@@ -80,7 +81,7 @@ std::optional<cv::Point2d> Lens::ray_of(cv::Point2d pixel) const {
   } else {
     cv::undistortPoints(std::vector{pixel}, rays, intrinsics(), distortion_, cv::noArray(), cv::noArray(), exact);
   }
-  constexpr double kSamePixel = 0.1;  // both iterate, and may end elsewhere
+  constexpr double kSamePixel = 0.1;  // the iterations may converge to another ray
   if (!within(rays[0]) || !(cv::norm(pixels_of(rays)[0] - pixel) < kSamePixel)) return std::nullopt;
   return rays[0];
 }

@@ -1,4 +1,4 @@
-// The picture plane of a camera: in which pixel a ray ends, and where a pixel looks.
+// The picture plane of a camera: the pixel of a ray, and the ray of a pixel.
 //
 // Rays are (x / z, y / z) in the camera's axes (x right, y down the picture, z along the optical axis). Pixels are
 // continuous, (0, 0) = outer corner of the picture. Distortion is OpenCV's: the manual of its module calib3d has the
@@ -26,9 +26,9 @@ class Lens {
 
   /// Of rays that lie within().
   std::vector<cv::Point2d> pixels_of(const std::vector<cv::Point2d>& rays) const;
-  /// Whether the model holds so far from the optical axis. Beyond, it would fold rays back into the picture.
+  /// Whether the model is valid this far from the optical axis. Farther out it would fold rays back into the picture.
   bool within(cv::Point2d ray) const { return ray.dot(ray) <= widest_ * widest_; }
-  /// nullopt where no ray that is within() ends there.
+  /// nullopt if the pixel belongs to no ray that is within().
   std::optional<cv::Point2d> ray_of(cv::Point2d pixel) const;
 
  private:

@@ -1,4 +1,4 @@
-// What the detector must know about a network beyond its ONNX file: the JSON document beside it.
+// What the detector must know about a network besides its ONNX file: the JSON document next to it.
 #pragma once
 
 #include <array>

@@ -50,7 +50,7 @@ void to_local_contrast(cv::Mat& bgr, const cv::Mat& observed, const LocalContras
   cv::Mat seen;
   observed.convertTo(seen, CV_32F);
   cv::threshold(seen, seen, 0.5, 1.0, cv::THRESH_BINARY);
-  // In place, and each let go of when it was used: of large pictures they take more memory than all else.
+  // In place, and released as soon as possible: for large pictures these take more memory than anything else.
   cv::Mat count = window_sum(seen, local.window_px);
   seen.release();
   cv::max(count, 1.0, count);
@@ -135,7 +135,7 @@ cv::Mat calibrated(const cv::Mat& output, const NetworkDescription& network) {
 CellArray road_cells(const cv::Mat& probability, double step_m, const GroundImage& image, double cell_m) {
   const cv::Mat observed = observed_cells(image, cell_m);
   cv::Mat fine_seen = observed_cells(image, step_m);
-  // Cells of the result that are seen by less than half of a fine cell still need a value from it.
+  // Cells of the result may need a value from a fine cell of which less than half was seen.
   fine_seen.convertTo(fine_seen, CV_32F, 1.0 / 255.0, 1e-3);
   const cv::Mat seen = padded(fine_seen, probability.size(), cv::Scalar::all(1e-3))(cv::Rect({}, probability.size()));
   const double factor = step_m / cell_m;

@@ -115,7 +115,7 @@ cv::Mat NeuralRoadDetector::answer_to(const cv::Mat& pixels, const cv::Mat& obse
                                       const std::stop_token& stop) const {
   const TilePlan plan{network_.tile_px, network_.overlap_px, network_.stride, network_.multiple};
   return blend_tiles(observed, plan, [&](const cv::Rect& tile) {
-    require_time(stop);
+    require_not_interrupted(stop);
     return runner_->run(pixels(tile));
   });
 }

@@ -12,12 +12,12 @@ namespace roadfix {
 
 class Network;
 
-/// As it is, quarter turns, and these mirrored as well.
+/// The picture as it is, in all quarter turns, and in these mirrored as well.
 inline constexpr std::array kOrientations{1, 4, 8};
 
 struct NeuralOptions {
-  /// Mean over the picture turned and mirrored in so many ways, one of kOrientations.
-  /// More costs that many times as much and is for maps, which have no real-time limit.
+  /// In how many orientations of the picture the network runs; the result is their mean. One of kOrientations. Takes
+  /// that many times as long: more than one is for maps, which are not made in real time.
   int orientations = 1;
 };
 
@@ -41,7 +41,7 @@ class NeuralRoadDetector : public RoadDetector {
 
  private:
   void check_shape(const std::filesystem::path& model) const;
-  /// The network's answer to a picture of it, CV_32FC3, of which what CV_8UC1 says was seen.
+  /// The network's output for a NetworkPicture's `pixels` and `observed`.
   cv::Mat answer_to(const cv::Mat& pixels, const cv::Mat& observed, const std::stop_token& stop) const;
 
   NetworkDescription network_;

@@ -7,8 +7,8 @@
 namespace roadfix {
 namespace {
 
-/// The part of the imagery that a cut can touch. What is blurred for it should not be a whole city, and OpenCV warps no
-/// picture with a side of 32,767 pixels or more. Empty where it touches none.
+/// The part of the imagery that a cut can touch, empty if there is none: a whole city would take long to blur, and
+/// OpenCV warps no picture with a side of 32,767 pixels or more.
 Orthoimage around(const Orthoimage& imagery, const GridPoint& centre, const Footprint& footprint, double gsd_m) {
   const GroundImage& all = imagery.image;
   const double blur_m = 4.0 * all.gsd_m + 2.0 * gsd_m;

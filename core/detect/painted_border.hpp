@@ -1,5 +1,5 @@
-// Black or white borders that were painted around what a picture shows, and are marked by nothing: the wedges beside a
-// turned or reprojected picture, the collar of an orthophoto, a letter box.
+// Black or white borders that were painted around a picture and that nothing marks as such: the wedges of a turned or
+// reprojected picture, the collar of an orthophoto, a letter box.
 #pragma once
 
 #include <cstdint>
@@ -14,17 +14,17 @@ namespace roadfix {
 /// Lossy codecs blur a border by so many levels where it meets the ground.
 inline constexpr int kBorderTolerance = 8;
 
-/// The squares in a picture's corners that tell its border's colour; none in a picture that they would fill.
+/// The squares in a picture's corners that show the border's colour; none if they would fill the picture.
 std::vector<cv::Rect> corner_squares(cv::Size picture);
 
-/// 0 or 255 where all pixels of a corner (CV_8UC1 or CV_8UC3) are pure black or white; nullopt elsewhere. A corner in
-/// any other colour may be ground, of which a lossy codec left one level.
+/// 0 or 255 if all pixels of a corner (CV_8UC1 or CV_8UC3) are black or white; else nullopt. A corner in any other
+/// single colour may be ground that a lossy codec flattened.
 std::optional<std::uint8_t> painted_level(const cv::Mat& corner);
 
-/// Of the areas that are 255 in `marked` (CV_8UC1) those that touch its rim, as 255; 0 elsewhere.
+/// The areas that are 255 in `marked` (CV_8UC1) and touch its rim, as 255; 0 elsewhere.
 cv::Mat joined_to_rim(const cv::Mat& marked);
 
-/// Marks as not observed what is connected to the picture's rim in the colour of a painted corner.
+/// Marks as not observed all that is connected to the picture's rim in the colour of a painted corner.
 void exclude_painted_border(FramePixels& frame);
 
 }  // namespace roadfix

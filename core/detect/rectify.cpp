@@ -14,11 +14,11 @@
 namespace roadfix {
 namespace {
 
-constexpr int kStripRows = 256;  // rectified at a time: where their pixels come from takes more memory than they do
+constexpr int kStripRows = 256;  // rectified at a time: the table of source positions takes more memory than pixels do
 
-const cv::Point2d kNowhere(-1e4, -1e4);  // outside of any frame, however far it is made smaller
+const cv::Point2d kNowhere(-1e4, -1e4);  // outside any frame, even after it is scaled down
 
-/// Box of the seen ground within the range, in metres (x right, y back).
+/// Box around the ground that is seen within the range, in metres (x right, y back).
 cv::Rect2d seen_ground(const FrameCamera& camera, const Lens& lens, cv::Size size, double max_range_m) {
   constexpr int kSteps = 32;
   cv::Point2d low(max_range_m, max_range_m);
@@ -62,7 +62,7 @@ cv::Size size_of(const cv::Rect2d& box, double gsd_m, double max_pixels) {
   return {std::max(1, static_cast<int>(cols)), std::max(1, static_cast<int>(rows))};
 }
 
-/// Where in the frame each pixel of the ground is seen.
+/// Where in the frame each pixel of the ground comes from.
 class GroundToFrame {
  public:
   GroundToFrame(const FrameCamera& camera, Lens lens, cv::Point2d first_m, double gsd_m, double max_range_m)
@@ -100,13 +100,14 @@ class GroundToFrame {
   double max_range_m_;
 };
 
-/// The frame in pixels hardly finer than those of the ground on its optical axis: warping takes the nearest four.
+/// The frame, averaged so that its pixels are hardly finer than those of the ground on the optical axis: warping then
+/// interpolates between the nearest four only.
 GroundImage averaged(const cv::Mat& frame, const cv::Mat& observed, double finer) {
   const cv::Mat seen = observed.empty() ? cv::Mat(frame.size(), CV_8UC1, cv::Scalar(255)) : observed;
   return at_gsd({frame, seen, 1.0}, std::max(1.0, std::floor(finer)));
 }
 
-/// These rows of the ground, from a frame that was made `scale` times as large.
+/// Fills these rows of the ground from `frame`, which is `scale` times as large as the original.
 void warp_rows(const GroundImage& frame, cv::Point2d scale, const GroundToFrame& placed, cv::Range rows,
                GroundImage& ground) {
   cv::Mat places(rows.size(), ground.pixels.cols, CV_32FC2);

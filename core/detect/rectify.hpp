@@ -22,9 +22,10 @@ struct RectifiedGround {
   double max_pixels = 0.0;   ///< LimitExceeded ("ground-too-large") for more
 };
 
-/// The part of the ground the frame shows; pixels outside the frame are unobserved. A frame of finer pixels is
-/// averaged. `frame_observed` (CV_8UC1, may be empty = all) marks the frame's own observed pixels. Throws what
-/// validate(), require_looking_down() and lens_of() do.
+/// The ground that the frame shows; pixels outside the frame are unobserved. A frame of finer pixels is averaged.
+/// `frame_observed` (CV_8UC1, empty = all) marks the frame's observed pixels. Throws what validate(),
+/// require_looking_down() and lens_of() do, LimitExceeded ("ground-too-large") and InvalidInput
+/// ("frame-sees-no-ground").
 GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const FrameCamera& camera,
                    const RectifiedGround& ground);
 

@@ -24,7 +24,7 @@ bool is_same_reader(std::string_view description, std::string_view other) {
   return name_in(description) == name_in(other);
 }
 
-void require_time(const std::stop_token& stop) {
+void require_not_interrupted(const std::stop_token& stop) {
   if (!stop.stop_requested()) return;
   throw Interrupted("detection-interrupted",
                     "the time limit ended before all roads of the picture were found: send one that shows less ground, "

@@ -1,4 +1,4 @@
-// The port for road detectors: the same detector makes the global map and the live feature map.
+// The interface of road detectors: the same detector makes the global map and the live feature map.
 #pragma once
 
 #include <cstdint>
@@ -32,26 +32,27 @@ class RoadDetector {
     return detect(image, cell_m, seed, {});
   }
 
-  /// Ground sample distance that the detector works best at; callers that resample anyway choose it.
+  /// Ground sample distance at which the detector works best; callers that resample anyway choose it.
   virtual double preferred_gsd_m() const = 0;
   /// How far beyond a cell the detector looks: blocks are read with this margin.
   virtual double halo_m() const = 0;
-  /// Which detector it is, whatever its settings: its kind, and name and checksum of its network.
+  /// Identifies the detector without its settings: its kind, and name and checksum of its network.
   virtual std::string name() const = 0;
   /// What changes the result beside preferred_gsd_m(), as "key=value key=value".
   virtual std::string settings() const = 0;
-  /// One line for the provenance of a source: name() and all parameters that change the result. Maps and feature maps
-  /// keep it: is_same_reader() has to read what has been written.
+  /// One line for the provenance of a source: name() and all parameters that change the result. Stored in maps and
+  /// feature maps, where is_same_reader() has to understand it: do not change its form.
   std::string describe() const;
 };
 
-/// Whether two describe() tell of detectors of one name: a picture is read in more orientations or not.
+/// Whether two results of describe() have the same name(), whatever the settings.
 bool is_same_reader(std::string_view description, std::string_view other);
 
-/// For detectors, between pieces of work: throws Interrupted ("detection-interrupted") once a stop is requested.
-void require_time(const std::stop_token& stop);
+/// Detectors and decoders call it between pieces of work: throws Interrupted ("detection-interrupted") once a stop is
+/// requested.
+void require_not_interrupted(const std::stop_token& stop);
 
-/// Cells (in the layout of RoadDetector::detect) that count as observed by the rule above.
+/// 255 for each cell (in the layout of RoadDetector::detect) that counts as observed by the rule above, else 0; CV_8U.
 cv::Mat observed_cells(const GroundImage& image, double cell_m);
 
 }  // namespace roadfix

@@ -68,7 +68,7 @@ cv::Mat blend_tiles(const cv::Mat& wanted, const TilePlan& plan, const std::func
       if (!part.empty()) parts.push_back({tile, part, {}});
     }
   }
-  // Who waits here takes no other work of the caller meanwhile, such as another picture.
+  // Isolated: while it waits here, a thread must not begin other work of the caller, such as another picture.
   tbb::this_task_arena::isolate(
       [&] { tbb::parallel_for_each(parts, [&](Part& part) { part.result = run(part.wanted); }); });
   const auto in_cells = [&](const cv::Rect& pixels) {

@@ -77,7 +77,7 @@ TreeCounts count_trees(const GroundImage& image, double cell_m, const TreeDetect
   std::mt19937_64 random(seed);
   Tally tally(counts);
   for (int id = 0; id < trees; ++id) {
-    require_time(stop);
+    require_not_interrupted(stop);
     const cv::Point root = open[pick(random, open.size())];
     tally.add(grow_tree(brightness, ground.observed, root, options.tree), id, ground.gsd_m / cell_m);
   }

@@ -30,7 +30,7 @@ class FeatureMethods : public ::testing::TestWithParam<FeatureKind> {
 TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
   const GridPose truth{place_, Angle::degrees(37)};
   Query query;
-  query.view = std::make_shared<GroundView>(rectified(cut_out(ortho_, truth, {150, 150}, 0.5)));
+  query.view = std::make_shared<GroundView>(vertical_view(cut_out(ortho_, truth, {150, 150}, 0.5)));
   query.truth = GeoPose{kZone.unproject(truth.position), kZone.true_from_grid(truth.heading, truth.position)};
   const Answer answer = method_->answer(query);
   ASSERT_EQ(answer.status, FixStatus::kFix) << answer.reason;
@@ -43,7 +43,7 @@ TEST_P(FeatureMethods, PlaceAFrameCutFromTheSameImagery) {
 TEST_P(FeatureMethods, PlaceTheUavAndNotTheMiddleOfWhatItSees) {
   const GridPose middle{place_, Angle::degrees(90)};
   Query query;
-  GroundView view = rectified(cut_out(ortho_, middle, {150, 150}, 0.5));
+  GroundView view = vertical_view(cut_out(ortho_, middle, {150, 150}, 0.5));
   view.nadir_px.y += 60.0;  // 30 m behind the middle, which is 30 m to the west
   query.view = std::make_shared<GroundView>(view);
   const Answer answer = method_->answer(query);
@@ -54,7 +54,7 @@ TEST_P(FeatureMethods, PlaceTheUavAndNotTheMiddleOfWhatItSees) {
 
 TEST_P(FeatureMethods, GiveNoFixOnOtherImagery) {
   Query query;
-  query.view = std::make_shared<GroundView>(rectified(textured(2).image));
+  query.view = std::make_shared<GroundView>(vertical_view(textured(2).image));
   EXPECT_EQ(method_->answer(query).status, FixStatus::kNoFix);
 }
 

@@ -62,7 +62,7 @@ TEST(RightMatches, AreThoseWithinTheToleranceOfTheTruePlace) {
   // The pixel 20 m ahead and 10 m to the right of the centre: 20 m east and 10 m south of it.
   const PointMatches matches{{{69.5F, 9.5F}, {69.5F, 9.5F}, {69.5F, 9.5F}},
                              {{120.0F, 110.0F}, {120.0F, 119.0F}, {120.0F, 121.0F}}};
-  EXPECT_EQ(right_matches(matches, origin, rectified(frame), east, 10.0), (std::vector<bool>{true, true, false}));
+  EXPECT_EQ(right_matches(matches, origin, vertical_view(frame), east, 10.0), (std::vector<bool>{true, true, false}));
   // The same UAV with its camera tilted: the picture shows what is ahead, 15 m further on.
   PointMatches ahead = matches;
   for (cv::Point2f& pixel : ahead.frame_px) pixel.y += 30.0F;
@@ -83,7 +83,7 @@ TEST(MatchPicture, DrawsRightMatchesGreenAndWrongOnesRed) {
     cv::Mat found;
     const cv::Scalar low = green ? cv::Scalar(0, 180, 0) : cv::Scalar(0, 0, 210);
     const cv::Scalar high = green ? cv::Scalar(90, 255, 90) : cv::Scalar(90, 90, 255);
-    cv::inRange(match_picture(std::vector{before}, rectified(frame), matches, pose), low, high, found);
+    cv::inRange(match_picture(std::vector{before}, vertical_view(frame), matches, pose), low, high, found);
     return cv::countNonZero(found);
   };
   const PointMatches right{{{39.5F, 39.5F}}, {{100.0F, 100.0F}}};

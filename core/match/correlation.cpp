@@ -6,7 +6,7 @@
 namespace roadfix {
 namespace {
 
-// Of one cell, a mean square: below it a spread is rounding error.
+// Variance below which a spread is rounding error.
 constexpr double kLeastSpread = 1e-9;
 
 }  // namespace

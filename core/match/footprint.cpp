@@ -39,8 +39,8 @@ std::size_t unobserved_after(std::span<const Cell> row) {
   return row.size() - end;
 }
 
-/// Behind the last cell of a span from its first, observed cell on. It ends before a block that would begin with an
-/// unobserved cell, so that all spans of a row take the fewest blocks.
+/// One past the last cell of the span that begins at the observed cell `first`. A span ends where its next block would
+/// begin with an unobserved cell, so that the spans of a row take the fewest blocks.
 std::size_t end_of_span(std::span<const Cell> row, std::size_t first) {
   std::size_t end = first + PackedFootprint::kAlignment;
   while (end < row.size() && is_observed(row[end])) end += PackedFootprint::kAlignment;
@@ -77,7 +77,7 @@ PackedFootprint::PackedFootprint(const FeatureMap& north_up) {
   for (std::size_t i = 0; i < values_.size(); ++i) mask_and_count(values_[i], mask_[i]);
 }
 
-/// The block's cells as they came, from which its mask and what it adds to the sums follow.
+/// Sets the mask of a block of cells, clears its unobserved cells, and adds it to the sums.
 void PackedFootprint::mask_and_count(Block& values, Block& mask) {
   // Loops that compilers turn into vectors.
   std::uint32_t observed = 0;
@@ -107,8 +107,7 @@ int footprint_reach(const FeatureMap& features) {
 }
 
 PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset) {
-  // A nadir that lies off the cell centre is a feature map whose centre lies off its nadir the other way, in the body
-  // frame.
+  // Moving the nadir off the cell's centre is moving the feature map under its nadir the other way, in the body frame.
   FeatureMap shifted = map;
   const double c = cos(grid_heading);
   const double s = sin(grid_heading);

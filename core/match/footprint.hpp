@@ -12,8 +12,8 @@
 
 namespace roadfix {
 
-/// Only observed cells matter: a span of a row begins and ends with one, and a row has several spans where that saves
-/// whole blocks of kAlignment cells.
+/// Holds spans of rows that begin and end with an observed cell. A row has several spans if that saves whole blocks of
+/// kAlignment cells.
 class PackedFootprint {
  public:
   static constexpr int kAlignment = 32;
@@ -31,12 +31,12 @@ class PackedFootprint {
   explicit PackedFootprint(const FeatureMap& north_up);
 
   std::span<const Span> spans() const { return spans_; }
-  /// 0..254, 0 where unobserved or padding. Of an even number of blocks of kAlignment.
+  /// 0..254, 0 where unobserved or padding; an even number of blocks of kAlignment.
   const std::uint8_t* values() const { return values_.data()->cells; }
   /// 255 where observed, else 0.
   const std::uint8_t* mask() const { return mask_.data()->cells; }
-  /// Largest distance of an observed cell from the nadir cell along an axis: the margin that a MapPlane needs around
-  /// it.
+  /// Largest distance of an observed cell from the nadir cell along either axis: how far from the rim of a MapPlane the
+  /// nadir has to stay.
   int reach() const { return reach_; }
 
   // Sums over all observed cells, in units of 1/254.
@@ -61,11 +61,11 @@ class PackedFootprint {
   std::int64_t sum_of_squares_ = 0;
 };
 
-/// Cells that a footprint reaches from its nadir at any heading.
+/// How many cells a footprint reaches from its nadir along either axis, at any heading.
 int footprint_reach(const FeatureMap& features);
 
-/// The footprint of a feature map at a grid heading, with its nadir `offset` from the centre of a cell (cells, each
-/// component within +-0.5): exact to sub-cell by resampling.
+/// The footprint of a feature map at a grid heading, resampled so that its nadir lies `offset` (in cells, each
+/// component within +-0.5) from the centre of a cell.
 PackedFootprint footprint_at(const FeatureMap& map, Angle grid_heading, GridGeometry::CellPosition offset = {});
 /// With its nadir in the middle of a cell.
 PackedFootprint footprint_at(const FeatureRotator& features, Angle grid_heading);

@@ -1,4 +1,4 @@
-// Headings as integers: a full turn in an even number of equal bins, each bin of one level split in two on the next.
+// Headings as integers: a full turn in an even number of equal bins, which the next finer level halves.
 #pragma once
 
 #include <numbers>
@@ -23,7 +23,7 @@ class HeadingBins {
   /// Bins between two, the shorter way round.
   int distance(int a, int b) const;
   HeadingBins halved() const { return HeadingBins(2 * count_); }
-  /// At most three bins more, so that a quarter turn is a whole number of them.
+  /// With up to three bins more, so that a quarter turn is a whole number of them.
   HeadingBins in_quarters() const { return HeadingBins((count_ + 3) / 4 * 4); }
 
  private:

@@ -16,14 +16,14 @@ struct PlaneCell {
   int row = 0;
 };
 
-/// Puts the nadir cell of the footprint on each of the places; sums run over the cells observed in both and are exact
-/// (integers inside). A place may lie anywhere, but where the footprint would leave the plane (by its reach()) nothing
-/// counts as observed. `sums` is as long as `places`.
+/// Puts the nadir cell of the footprint on each of the places and sums over the cells observed in both, exactly (in
+/// integers). Places may lie anywhere, but if the footprint leaves the plane (by its reach()), all sums are 0. `sums`
+/// is as long as `places`.
 void match_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                 std::span<MatchSums> sums);
 
-/// The sums of m l alone, in units of 1 / 254^2, where all of the plane is observed: there is no cell 255 below the
-/// footprint, which stays within the plane at each of the places. `sums` is as long as `places`.
+/// The sums of m l alone, in units of 1 / 254^2. All cells of the plane must be observed (not 255), and the footprint
+/// must stay within the plane at each of the places. `sums` is as long as `places`.
 void product_sums(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                   std::span<std::int64_t> sums);
 

@@ -8,7 +8,7 @@
 
 namespace roadfix {
 
-/// The nadir lies in this cell, the heading is this bin, the scale this step of Scales.
+/// The cell that the nadir lies in, the bin of the heading, and the index of the scale in Scales.
 struct LatticePose {
   LatticeIndex cell;
   int bin = 0;
@@ -16,7 +16,7 @@ struct LatticePose {
   int scale_step = 0;
 };
 
-/// A total order of poses at one scale: which of equal ones is the best does not depend on which thread was first.
+/// A total order of poses at one scale, so that the best one does not depend on the order of threads.
 inline bool is_better(const LatticePose& a, const LatticePose& b) {
   return std::tie(b.score, a.bin, a.cell.row, a.cell.col) < std::tie(a.score, b.bin, b.cell.row, b.cell.col);
 }

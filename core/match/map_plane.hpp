@@ -1,4 +1,4 @@
-// Map cells laid out for the matching kernel: row after row without gaps, and readable beyond their end.
+// Map cells laid out for the matching kernel: row after row without gaps, readable beyond the end.
 #pragma once
 
 #include <cstddef>

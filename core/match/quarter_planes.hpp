@@ -1,6 +1,6 @@
-// A window of the map as it is and, where many poses share it, rotated by quarter turns: to match a footprint on a
-// window rotated to the left gives what the footprint rotated to the right would give on the window as it is, without
-// rounding. So headings a quarter turn apart need one turned and packed footprint.
+// A window of the map and, if many poses share it, the same rotated by quarter turns. Matching a footprint on a window
+// rotated to the left gives exactly what the footprint rotated to the right gives on the window as it is, so that
+// headings a quarter turn apart share one turned and packed footprint.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,7 @@ class QuarterPlanes {
   std::vector<MapPlane> planes_;
 };
 
-/// Whether it takes less to rotate a window than to turn and pack the footprints that it spares.
+/// Whether rotating the window takes less time than turning and packing the footprints that it saves.
 bool worth_rotating(const GridGeometry& window, int reach, double footprints_spared);
 
 }  // namespace roadfix

@@ -1,11 +1,10 @@
-// How large the ground in a feature map may be, where the altitude is known only roughly: the fourth dimension of a
-// search.
+// The scale of a feature map whose altitude is known only roughly: the fourth dimension of a search.
 #pragma once
 
 namespace roadfix {
 
-/// Natural logarithm of the largest factor of a scale range in [0, 1): the ground in a feature map may be smaller by
-/// that share, or larger by as much, from 1 - range to 1 / (1 - range).
+/// Natural logarithm of the largest factor of a scale range in [0, 1): the true size of the ground in a feature map is
+/// 1 - range to 1 / (1 - range) times the stated one.
 double max_log_scale(double range);
 
 /// Factors exp(index * step) on the feature map's size, for |index| <= reach. Reach 0: the size is as it was given.
@@ -20,7 +19,7 @@ class Scales {
   double factor(int index) const;
   /// Index of the factor nearest to exp(log_factor).
   int nearest(double log_factor) const;
-  /// The same range in so many times finer steps: indices are multiplied by it.
+  /// The same range in steps `times` as fine: indices are multiplied by `times`.
   Scales finer(int times) const;
 
  private:

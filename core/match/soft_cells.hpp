@@ -7,8 +7,8 @@
 
 namespace roadfix {
 
-/// Certain cells stay as they are, unobserved ones too; e = 1 changes nothing. Below 1 doubtful roads count for more: a
-/// correlation of plain probabilities listens to the few cells that a detector was sure of.
+/// Certain and unobserved cells stay as they are; e = 1 changes nothing. With e below 1 doubtful roads count for more:
+/// a correlation of plain probabilities depends mostly on the few cells that a detector was sure of.
 class SoftCells {
  public:
   /// `exponent` in (0, 1].

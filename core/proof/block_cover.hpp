@@ -9,16 +9,16 @@
 
 namespace roadfix {
 
-/// Of side x side blocks, row by row, with the nadir's in the middle.
+/// Of side x side blocks, row by row, with the nadir's block in the middle.
 struct BlockCover {
   int side = 0;                    ///< odd
-  std::vector<bool> inner, outer;  ///< covered from every position of the nadir's block, from any
+  std::vector<bool> inner, outer;  ///< wholly covered from every position of the nadir's block; partly, from any
 };
 
-/// Of the observed cells, with the nadir in the cell `nadir`.
+/// By the observed cells, with the nadir in the cell `nadir`.
 BlockCover cover_of(const CellArray& cells, CellOffset nadir);
 
-/// What all of them cover (inner), and what any of them does (outer).
+/// `inner`: covered by all of them; `outer`: by any of them.
 BlockCover common_cover(std::span<const BlockCover* const> covers);
 
 }  // namespace roadfix

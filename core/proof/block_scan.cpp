@@ -29,7 +29,7 @@ PartialSums partial_sums(const BoundMap& map, const TurnedFeatures& turned, int 
   return sums;
 }
 
-// Streets at right angles fit as well at every block: there only the closer look excludes any.
+// Exact sums are given up on if they exclude hardly any blocks, as in a grid of streets where every block fits as well.
 constexpr int kTriedAtLeast = 64;
 constexpr int kTriedForOne = 10;
 
@@ -87,7 +87,7 @@ std::vector<BlockScan::Row> BlockScan::rows_of(const BlockTile& tile) const {
   return rows;
 }
 
-/// What a sector's headings cover of the map, and what they need of it.
+/// Sets for each row of blocks what a sector's headings cover of the map, and the cross sum that they need.
 void BlockScan::cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const {
   const double goal = floor_;
   for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -1,5 +1,5 @@
 // The first half of a proof: an upper bound for every block of positions at every heading. Blocks that could hold a
-// better pose than the best known one become nodes, to be looked into.
+// better pose than the best one known become nodes, to be visited.
 #pragma once
 
 #include <array>
@@ -11,16 +11,16 @@
 
 namespace roadfix {
 
-/// A block of positions at a heading that may hold something better.
+/// A block of positions at a heading that may hold a better pose.
 struct BoundNode {
   std::int32_t col = 0;  ///< block of the map
   std::int32_t row = 0;
   std::int32_t heading = 0;  ///< index into the headings searched
   float bound = 0.0F;
-  BlockSums sums;  ///< that it follows from
+  BlockSums sums;  ///< from which `bound` follows
 };
 
-/// Blocks that are bounded together.
+/// Blocks that are bounded together: BoundMap::kRun columns and so many rows.
 struct BlockTile {
   int col = 0;
   int row = 0;
@@ -29,13 +29,13 @@ struct BlockTile {
 
 struct BlockScanResult {
   std::vector<BoundNode> nodes;
-  std::int64_t eligible = 0;  ///< blocks x headings with a position that counts
-  bool complete = true;       ///< false if time was over before
+  std::int64_t eligible = 0;  ///< blocks with an eligible position, times headings
+  bool complete = true;       ///< false if time ran out
 };
 
 class BlockScan {
  public:
-  /// `floor`: what a pose has to exceed; may grow while the scan runs.
+  /// `floor`: the score that a pose has to exceed; may grow while the scan runs.
   BlockScan(const BoundProblem& problem, const HeadingSectors& headings, const std::atomic<double>& floor)
       : problem_(problem), headings_(headings), floor_(floor) {}
 
@@ -58,7 +58,7 @@ class BlockScan {
   std::vector<Row> rows_of(const BlockTile& tile) const;
   std::int64_t eligible(const std::vector<Row>& rows) const;
   void cover(const Sector& sector, const BlockTile& tile, std::vector<Row>& rows) const;
-  /// Exact sums of a tile, and of how many blocks that were tried they excluded so far.
+  /// Exact sums below a tile, and how many of the blocks tried with them they excluded so far.
   struct Ground {
     GroundSums sums;
     int tried = 0;

@@ -1,4 +1,4 @@
-// The second half of a proof: a closer look into blocks that may hold a better pose, by quarters and then cell by cell.
+// The second half of a proof: blocks that may hold a better pose are bounded by quarters, then scored cell by cell.
 #pragma once
 
 #include <atomic>
@@ -13,10 +13,10 @@ namespace roadfix {
 
 class BlockVisit {
  public:
-  /// `floor`: what a pose has to exceed; may grow meanwhile.
+  /// `floor`: the score that a pose has to exceed; may grow meanwhile.
   BlockVisit(const BoundProblem& problem, const std::atomic<double>& floor) : problem_(problem), floor_(floor) {}
 
-  /// The best pose of these nodes, by is_better(), if it exceeds the floor. All are of this heading. Thread-safe.
+  /// The best pose of these nodes, by is_better(), if it exceeds the floor. All nodes have this heading. Thread-safe.
   std::optional<LatticePose> best_pose(std::size_t heading, std::span<const BoundNode> nodes) const;
 
  private:

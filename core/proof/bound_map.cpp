@@ -16,7 +16,7 @@ CellArray above_base(const CellArray& cells, int base) {
   return above;
 }
 
-/// Maximum of each cell and the next one at (right, down), both axes: side 1 to 2, 2 to 4.
+/// The maximum of each cell and those `apart` to the right, below, and both: maxima of squares twice as large.
 CellArray pooled_once(const CellArray& cells, int apart) {
   CellArray wide(cells.cols(), cells.rows(), 0);
   for (int row = 0; row < cells.rows(); ++row) {
@@ -48,7 +48,7 @@ int max_observed(const CellArray& cells) {
   return max;
 }
 
-/// What the map offers to a piece at every cell of a row; beyond the map, nothing.
+/// What the piece matches with its middle at each cell of a row; nothing beyond the map.
 void sum_along_row(const CellArray& above, int row, const std::vector<CellOffset>& piece,
                    std::vector<std::uint16_t>& sums) {
   std::ranges::fill(sums, std::uint16_t{0});
@@ -111,7 +111,7 @@ void BoundMap::fill_piece_plane(int index, const std::vector<CellOffset>& piece,
   for (int row = 0; row < above.rows(); ++row) {
     sum_along_row(above, row, piece, sums);
     max_of_windows(sums, best_of_row);
-    // Windows overlap: a row counts for its own block row and, but for the last one, for the block row above.
+    // Windows overlap: a row counts for its own block row and, but for a block's last row, for the block row above.
     for (int block_row = std::max(0, (row - kBlockWindow + kBlockCells) / kBlockCells); block_row <= row / kBlockCells;
          ++block_row) {
       auto* out = best.data() + static_cast<std::ptrdiff_t>(block_row) * block_cols_;
@@ -131,7 +131,7 @@ void BoundMap::fill_piece_plane(int index, const std::vector<CellOffset>& piece,
 void BoundMap::fill_observed(const CellArray& cells) {
   CellArray seen(cells.cols(), cells.rows(), 0);
   for (std::size_t i = 0; i < cells.cells().size(); ++i) seen.cells()[i] = is_observed(cells.cells()[i]) ? 1 : 0;
-  // Window sums by running over the rows of window rows: small enough to be counted plainly.
+  // Windows are small: their cells are simply counted, column by column.
   std::vector<int> count(static_cast<std::size_t>(cells.cols() + kBlockWindow));
   for (int block_row = 0; block_row < block_rows_; ++block_row) {
     std::ranges::fill(count, 0);

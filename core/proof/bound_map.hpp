@@ -1,9 +1,10 @@
-// The map's side of an upper bound on scores: what a feature map may find at best anywhere in a block of positions.
+// The map's part of an upper bound on scores: the most that a feature map can match anywhere in a block of positions.
 //
-// A block is kBlockCells x kBlockCells nadir cells. For a piece of road in the feature map (a line of some direction,
-// or a single cell) that lies somewhere in the block (col, row) relative to the nadir's block, a plane holds the most
-// that the map offers to that piece over all positions of both: a maximum over (2 kBlockCells - 1)^2 places. What a
-// footprint scores in a block is at most the sum over its pieces. Thread-safe once built.
+// A block is kBlockCells x kBlockCells nadir cells. The feature map consists of pieces of road: lines of some
+// direction, and single cells. If a piece lies in the block (col, row) relative to the nadir's block, a plane holds the
+// most that it can match there over all positions of the piece and of the nadir within their blocks: a maximum over (2
+// kBlockCells - 1)^2 places. What a footprint matches in a block is at most the sum over its pieces. Thread-safe once
+// built.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +17,7 @@
 namespace roadfix {
 
 inline constexpr int kBlockCells = 4;
-/// Cells along each axis that the cells of a block of a footprint come to lie on while its nadir is anywhere in a
-/// block.
+/// Side, in map cells, of the square that a block of a footprint can cover while the nadir is anywhere in its block.
 inline constexpr int kBlockWindow = 2 * kBlockCells - 1;
 
 class BoundMap {
@@ -27,9 +27,9 @@ class BoundMap {
   static constexpr int kAllObserved = kLineDirections + 1;  ///< kFull if every place is observed, else 0
   static constexpr int kAnyObserved = kLineDirections + 2;  ///< kFull if any place is observed, else 0
   static constexpr int kPlanes = kLineDirections + 3;
-  /// The value of a piece that lies wholly on certain road.
+  /// The value of a piece all of whose cells are on the map's highest cells (base() + span()).
   static constexpr int kFull = 63;
-  /// Runs of blocks are read in vectors of so many.
+  /// Blocks of a row are read so many at a time.
   static constexpr int kRun = 64;
 
   /// Bounds hold for positions from which a footprint stays kBorder cells or more within the grid.
@@ -37,9 +37,9 @@ class BoundMap {
   static constexpr int kBorder = 16;
 
   const GridGeometry& geometry() const { return geometry_; }
-  /// Least value of an observed cell; the bounds count what lies above.
+  /// The least value of an observed cell; bounds are over values above it.
   int base() const { return base_; }
-  /// Most above base, at least 1.
+  /// The largest value above base, at least 1.
   int span() const { return span_; }
 
   std::ptrdiff_t stride() const { return stride_; }
@@ -57,7 +57,8 @@ class BoundMap {
     return {cells_.data() + at, value_.data() + at, square_.data() + at};
   }
 
-  /// The cells themselves, and the maximum over the side x side cells from each one on, less base; side 2 or 4.
+  /// The cells themselves; and for each cell the maximum over the side x side cells from it on, less base (side 2 or
+  /// 4).
   const MapPlane& exact() const { return exact_; }
   const MapPlane& pooled(int side) const { return side == 2 ? pooled2_ : pooled4_; }
 
@@ -65,7 +66,7 @@ class BoundMap {
   std::size_t bytes() const;
 
  private:
-  /// The most that the map (its cells `above` base) offers to the piece anywhere in each block, of kFull.
+  /// For each block the most that the piece can match in it, in units of 1 / kFull. `above`: the cells less base.
   void fill_piece_plane(int index, const std::vector<CellOffset>& piece, const CellArray& above);
   void fill_observed(const CellArray& cells);
   void fill_sums(const CellArray& cells);

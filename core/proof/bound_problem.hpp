@@ -1,4 +1,4 @@
-// What the stages of a proof share: the question, and where its positions lie on the map.
+// What the stages of a proof share: the search, and where its positions lie on the map.
 #pragma once
 
 #include "core/grid/feature_rotator.hpp"
@@ -12,7 +12,7 @@ struct BoundProblem {
   const BoundedSearch& search;
   const BoundMap& map;
   FeatureRotator rotator;
-  int shift_col;  ///< of the positions within the map, cells
+  int shift_col;  ///< map cell of the first position
   int shift_row;
   int base;  ///< base_of() the feature map
 
@@ -27,14 +27,14 @@ struct BoundProblem {
   double bound_of(const BlockSums& sums) const { return score_bound(sums, search.cells); }
   /// The heading with this index among those searched.
   Angle heading(std::size_t index) const { return search.bins.heading(search.headings[index]); }
-  /// Whether this cell of the map is one of the positions searched,
+  /// Whether this cell of the map is an eligible position,
   bool cell_eligible(int map_col, int map_row) const {
     const int col = map_col - shift_col;
     const int row = map_row - shift_row;
     return col >= 0 && row >= 0 && col < search.positions.cols && row < search.positions.rows &&
            search.eligible(col, row);
   }
-  /// or on any cell of this block of the map.
+  /// or any cell of this block of the map is.
   bool block_eligible(int col, int row) const {
     for (int i = 0; i < kBlockCells * kBlockCells; ++i) {
       if (cell_eligible(col * kBlockCells + i % kBlockCells, row * kBlockCells + i / kBlockCells)) return true;

@@ -1,4 +1,4 @@
-// The sums of the bound for a run of blocks side by side, vectorised for the processor that runs it.
+// The sums of a bound for a run of neighbouring blocks, vectorised for the processor that runs it.
 #pragma once
 
 #include <array>
@@ -22,13 +22,13 @@ struct CoveredSums {
 };
 void covered_sums(const BoundMap& map, std::span<const RowRun> runs, int col, int row, CoveredSums& sums);
 
-/// Over cells of a map; as the sums before a cell of its row, a run of cells is a difference of two.
+/// Sums over the cells of a map row before a cell; a run of cells is the difference of two.
 struct CellSums {
   std::uint64_t cells_and_values = 0;  ///< observed cells + 2^32 times values above the map's base
   std::uint64_t squares = 0;           ///< of those values
 };
-/// Those of the cells below a footprint whose nadir is at `nadir`, and at the cells to its right. `footprint`: its
-/// observed cells, relative to the nadir; `nadir` points into rows of sums that are `stride` apart.
+/// The sums over the cells below a footprint with its nadir at `nadir`, and at each cell to the right of that.
+/// `footprint`: its observed cells, relative to the nadir; `nadir` points into rows of sums that are `stride` apart.
 void cell_sums(std::span<const RowRun> footprint, const CellSums* nadir, std::ptrdiff_t stride,
                std::array<CellSums, kBlockCells>& sums);
 

@@ -1,4 +1,4 @@
-// The sum that an upper bound on scores is: what the pieces of a feature map find at best, each in its block of the map
+// An upper bound on scores as a sum: the most that each piece of a feature map can match in its block of the map
 // (bound_map.hpp).
 #pragma once
 
@@ -8,8 +8,7 @@
 
 namespace roadfix {
 
-/// A sum over blocks of planes: of the weight of each group of terms times their plane values. Terms of a group lie
-/// side by side.
+/// The sum over all terms of plane value times weight. Terms of the same weight are a group, side by side in `terms`.
 struct BoundTerms {
   struct Term {
     std::int16_t col = 0;  ///< block relative to the nadir's
@@ -29,8 +28,8 @@ enum class Rounding { kUp, kDown };
 
 using WeightedTerms = std::vector<std::pair<double, BoundTerms::Term>>;
 
-/// Weights (>= 0) rounded to a few, so that many terms share one: sums are at least (kUp) or at most (kDown) those of
-/// the exact weights.
+/// Rounds weights (>= 0) so that there are few groups: sums are at least (kUp) or at most (kDown) those of the exact
+/// weights.
 BoundTerms quantized(WeightedTerms weighted, Rounding rounding);
 
 }  // namespace roadfix

@@ -17,7 +17,7 @@
 namespace roadfix {
 namespace {
 
-constexpr std::size_t kBatch = std::size_t{1} << 19U;  // looked into before the best score is read again
+constexpr std::size_t kBatch = std::size_t{1} << 19U;  // nodes visited before the best score is read again
 
 bool higher(const BoundNode& a, const BoundNode& b) { return a.bound > b.bound; }
 
@@ -60,7 +60,7 @@ class BranchAndBound {
         if (!found.complete) complete = false;
         add(found);
       });
-      // What is remembered must not grow without end.
+      // Visits nodes early if there are many, to bound memory.
       if (!complete || (nodes_.size() > kBatch && !visit())) return false;
       next = end;
     }
@@ -73,7 +73,7 @@ class BranchAndBound {
     bounded_ += found.eligible;
   }
 
-  /// Best first, until nothing can be better than what was found; false if time was over before.
+  /// Best first, until none of the nodes can hold a better pose than the best one found. False if time ran out.
   bool visit() {
     std::erase_if(nodes_, [&](const BoundNode& node) { return static_cast<double>(node.bound) <= floor_; });
     std::ranges::sort(nodes_, higher);
@@ -91,7 +91,7 @@ class BranchAndBound {
     return true;
   }
 
-  /// False if time was over before all were looked into.
+  /// False if time ran out.
   bool look_into(const std::vector<BoundNode>& nodes) {
     std::map<std::int32_t, std::vector<BoundNode>> of_heading;
     for (const BoundNode& node : nodes) of_heading[node.heading].push_back(node);
@@ -113,7 +113,7 @@ class BranchAndBound {
     const std::lock_guard lock(mutex_);
     if (result_.better && !is_better(pose, *result_.better)) return;
     result_.better = pose;
-    floor_ = std::nextafter(pose.score, 0.0);  // its equals may be better
+    floor_ = std::nextafter(pose.score, 0.0);  // poses of the same score may come before it in the order
   }
 
   const BoundedSearch& search_;

@@ -1,5 +1,6 @@
 // Is there a better pose in a region than the best one known? Upper bounds for all blocks of positions at every
-// heading, then a closer look at those blocks that could hold more, until none is left: a proof, or the better pose.
+// heading, then a closer look at the blocks that could hold a better one, until none is left: a proof, or the better
+// pose.
 #pragma once
 
 #include <cstdint>
@@ -23,23 +24,23 @@ struct BoundedSearch {
   HeadingBins bins{2};
   std::vector<int> headings;                       ///< bins to search, ascending; at least one
   GridGeometry positions;                          ///< cells of which the centres are searched; not empty
-  std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all; from several threads
+  std::function<bool(int col, int row)> eligible;  ///< whether a cell of `positions` is in the region; thread-safe
   FootprintCells cells;                            ///< of `features`
   double known = 0.0;                              ///< score of the best pose known so far
   int threads = 1;
 };
 
 struct BoundedResult {
-  /// The best pose, if it scores more than what was known; of equal ones (and, before `complete`, of those that were
-  /// looked at) the first by is_better().
+  /// The best pose, if it scores more than `known`; if not `complete`, the best one found. Of equal ones the first by
+  /// is_better().
   std::optional<LatticePose> better;
-  /// No pose of the region scores more than this: the best score known or found if `complete`.
+  /// No pose of the region scores more than this; if `complete`, it is the best score known or found.
   double bound = 0.0;
-  bool complete = true;         ///< false if time was over before
+  bool complete = true;         ///< false if time ran out
   double excluded_share = 1.0;  ///< of all poses, at least; 1 if `complete`
 };
 
-/// At the deadline it stops and says what it has; throws Interrupted if asked to stop.
+/// At the deadline it stops and returns what it has; throws Interrupted if asked to stop.
 BoundedResult search_with_bound(const BoundedSearch& search, const Deadline& deadline);
 
 }  // namespace roadfix

@@ -46,7 +46,7 @@ GroundRange GroundSums::below(std::span<const RowRun> footprint, int block_col, 
       include(range.value, value);
       const auto square = static_cast<double>(sums.squares);
       range.square_min = std::min(range.square_min, square);
-      // Of each position by itself: the one with the most roads need not be the one with the most certain ones.
+      // Per position: the one with the largest sum of values need not be the one with the least sum of squares.
       const double mixed = span_ * static_cast<double>(value) - square;
       range.mixed_max = std::max(range.mixed_max, mixed);
     }

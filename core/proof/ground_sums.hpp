@@ -1,4 +1,4 @@
-// What the map holds under a footprint, exactly, while its nadir is anywhere in a block.
+// Exact sums of the map under a footprint whose nadir is anywhere in a block.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace roadfix {
 
-/// The least and the most of sums under a footprint over the positions of a block.
+/// The least and the largest of sums under a footprint over the positions of a block.
 struct GroundRange {
   Interval cells;           ///< that the map has observed
   Interval value;           ///< above the map's base

@@ -83,7 +83,7 @@ HeadingSectors::Covered HeadingSectors::covered(const Sector& sector, const Sect
   BlockSums& sums = result.sums;
   sums.map = {static_cast<double>(run.inner.value[block]), static_cast<double>(run.outer.value[block])};
   sums.map_square_min = static_cast<double>(run.inner.square[block]);
-  // No term of the sum is negative: over a footprint it is no more than over all that the sector covers.
+  // No term is negative, so that the sum over a footprint is at most that over all that the sector covers.
   sums.map_mixed_max = sums.span * sums.map.max - static_cast<double>(run.outer.square[block]);
   result.map_observed = run.outer.cells[block] == sector.outer_blocks * kBlockCells * kBlockCells;
   if (!result.map_observed) {

@@ -1,4 +1,4 @@
-// The headings of a proof: the feature map turned to each, and what neighbouring headings cover of the map together.
+// The headings of a proof: the feature map turned to each, and what sectors of neighbouring headings cover of the map.
 #pragma once
 
 #include <cstddef>
@@ -12,16 +12,16 @@
 
 namespace roadfix {
 
-/// Headings beside each other, first <= heading < end, and what any or all of them cover.
+/// Neighbouring headings, first <= heading < end, with the blocks that all (inner) and any (outer) of them cover.
 struct Sector {
   std::size_t first = 0;
   std::size_t end = 0;
   std::vector<RowRun> inner, outer;
   double outer_blocks = 0.0;
-  BlockSums features;  ///< what holds for all of them; map sums are left out
+  BlockSums features;  ///< bounds that hold for all of them; map sums are not set
 };
 
-/// What the map holds under all and under any of a sector's headings, for a run of blocks.
+/// Sums of the map under the inner and outer blocks of a sector, for a run of blocks.
 struct SectorRun {
   CoveredSums inner, outer;
 };
@@ -31,17 +31,17 @@ struct PartialFeatures {
   double sum_min = 0.0, sum_max = 0.0, square_min = 0.0;
 };
 
-/// Puts what holds for one heading in place of what holds for its sector: where all of the map under the footprint is
-/// observed, and where parts of it are not.
+/// Replaces what holds for a sector by what holds for one of its headings: if all of the map under the footprint is
+/// observed, and if parts of it are not.
 void narrow(BlockSums& sums, const TurnedFeatures& turned);
 void narrow(BlockSums& sums, const TurnedFeatures& turned, const PartialFeatures& observed);
-/// Puts what the map holds under a heading's footprint in place of what it holds under those of its sector.
+/// Replaces the map's sums under the footprints of a sector by those under the footprint of one heading.
 void narrow(BlockSums& sums, const TurnedFeatures& turned, const GroundRange& ground);
 
 class HeadingSectors {
  public:
   explicit HeadingSectors(const BoundProblem& problem) : problem_(problem) {}
-  /// False if time was over before all were turned.
+  /// Turns the feature map to all headings. False if time ran out.
   bool turn(const Deadline& deadline);
 
   const std::vector<Sector>& sectors() const { return sectors_; }

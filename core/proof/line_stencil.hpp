@@ -1,5 +1,5 @@
-// Short straight lines of cells in every direction: the pieces that roads are made of, shared by the map's and the
-// feature map's side of the bound (bound_map.hpp, turned_features.hpp).
+// Short straight lines of cells in all directions: the pieces of roads, shared by the map's and the feature map's part
+// of the bound (bound_map.hpp, turned_features.hpp).
 #pragma once
 
 #include <array>

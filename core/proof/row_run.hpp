@@ -1,4 +1,4 @@
-// Cells or blocks side by side.
+// Runs of neighbouring cells or blocks in a row.
 #pragma once
 
 #include <vector>
@@ -7,14 +7,14 @@
 
 namespace roadfix {
 
-/// Relative to a middle: first <= column < end of a row.
+/// The columns first <= column < end of a row, relative to a middle cell.
 struct RowRun {
   int row = 0;
   int first = 0;
   int end = 0;
 };
 
-/// Those of cols x rows that marked(col, row) is true of, relative to `middle`.
+/// The runs of all cells of cols x rows for which marked(col, row) is true, relative to `middle`.
 template <typename Marked>
 std::vector<RowRun> runs_of(int cols, int rows, CellOffset middle, Marked marked) {
   std::vector<RowRun> runs;

@@ -12,12 +12,12 @@
 namespace roadfix {
 namespace {
 
-/// Of the block (col, row), counted from the nadir's.
+/// For the block (col, row) relative to the nadir's.
 BoundTerms::Term term_at(int col, int row, int plane) {
   return {static_cast<std::int16_t>(col), static_cast<std::int16_t>(row), static_cast<std::int16_t>(plane)};
 }
 
-/// The line of stencils whose direction is nearest.
+/// Index of the line stencil whose direction is nearest.
 int nearest_direction(double radians) {
   const auto turned = static_cast<int>(std::lround(radians / std::numbers::pi * kLineDirections));
   return ((turned % kLineDirections) + kLineDirections) % kLineDirections;
@@ -28,7 +28,7 @@ struct Placed {
   int share = -1;
 };
 
-/// Where among a cell and its neighbours most of the piece is there.
+/// Where among a cell and its neighbours the remainder holds most of the piece.
 Placed best_near(const RoadRemainder& rest, const std::vector<CellOffset>& piece, CellOffset place, int level) {
   Placed best;
   for (int row = -1; row <= 1; ++row) {

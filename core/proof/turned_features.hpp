@@ -1,5 +1,5 @@
-// The feature map's side of an upper bound on scores (bound_map.hpp): at one heading, the pieces of road that it
-// consists of, and which blocks of the map its footprint covers.
+// The feature map's part of an upper bound on scores (bound_map.hpp): the pieces of road that it consists of at one
+// heading, and the blocks of the map that its footprint covers.
 #pragma once
 
 #include <vector>
@@ -13,16 +13,16 @@
 
 namespace roadfix {
 
-/// Value of a feature map that the bound counts from: half of the observed cells lie at or below.
+/// The value above which a feature map's cells count in the bound: the median of the observed cells.
 int base_of(const FeatureMap& features);
-/// What lies above the base, less the base; unobserved elsewhere.
+/// Cells above the base, less the base; unobserved elsewhere.
 FeatureMap above_base(const FeatureMap& features, int base);
 
 /// One heading. Values are cells as stored (0..254), map values less the map's base.
 struct TurnedFeatures {
   double cells = 0.0, sum = 0.0, square = 0.0;  ///< over the observed cells
-  BoundTerms cross;                             ///< sum of (l - base) m', at most
-  BoundTerms sum_min, sum_max, square_min;      ///< over cells where the map is observed
+  BoundTerms cross;                             ///< bounds the sum of (l - base) m from above
+  BoundTerms sum_min, sum_max, square_min;      ///< bound sums of l and l^2 over cells where the map is observed
   BlockCover cover;
   std::vector<RowRun> runs;  ///< the observed cells, relative to the nadir's
 

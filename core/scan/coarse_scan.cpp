@@ -23,7 +23,7 @@ namespace {
 
 constexpr int kHeadingsTogether = static_cast<int>(ScanDirection().bins.size());
 
-/// A total order: which of equal ones are kept does not depend on which thread was first.
+/// A total order, so that what is kept does not depend on the order of threads.
 bool is_better(const ScanPose& a, const ScanPose& b) {
   return std::tie(b.score, a.bin, a.row, a.col) < std::tie(a.score, b.bin, b.row, b.col);
 }
@@ -66,7 +66,7 @@ class Scan {
   }
 
  private:
-  /// Those with a heading that is asked for.
+  /// Those of the two directions of a pair that have a heading asked for.
   std::vector<ScanDirection> directions_of(std::span<const int> bases) const {
     std::vector<ScanDirection> directions;
     for (const bool half_turn : {false, true}) {
@@ -80,7 +80,7 @@ class Scan {
     return directions;
   }
 
-  /// A pair of neighbouring headings, and the same turned by half a turn. Of their scores also the sum of squares.
+  /// Scans a pair of neighbouring headings, and the same turned by half a turn. Sets the sum of their squared scores.
   void scan_pair(std::span<const int> bases, double& squares) {
     if (deadline_.over()) return;
     std::unique_ptr<ScanBuffers> buffers = taken_buffers();
@@ -151,7 +151,7 @@ class Scan {
   TileScan tile_scan_;
   std::mutex mutex_;
   std::vector<std::unique_ptr<ScanBuffers>> idle_;
-  std::vector<double> squares_;  ///< of each pair: added up in their order, whichever thread was first
+  std::vector<double> squares_;  ///< of each pair, so that they are summed in the order of pairs, not of threads
   float floor_ = 0.0F;
   std::size_t scanned_ = 0;  ///< headings
   ScanResult result_;

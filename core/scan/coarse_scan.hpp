@@ -22,13 +22,13 @@ struct ScanPose {
 };
 
 struct ScanRequest {
-  GridGeometry positions;  ///< cells of which the centres are scanned
+  GridGeometry positions;  ///< cells whose centres are scanned
   HeadingBins bins{2};
   std::vector<int> headings;                       ///< bins to scan, ascending
   std::function<bool(int col, int row)> eligible;  ///< cells of `positions` that count at all
   std::size_t keep = 4096;                         ///< best local maxima (within a heading) to return
   int threads = 1;
-  std::function<void(std::size_t headings)> scanned;  ///< so far; from any of the threads, one at a time
+  std::function<void(std::size_t headings)> scanned;  ///< progress: called from any thread, but one at a time
 };
 
 struct ScanResult {
@@ -38,9 +38,9 @@ struct ScanResult {
   double share = 1.0;  ///< of the headings scanned before the deadline
 };
 
-/// `map` covers the positions with its reach on every side (unobserved where nothing is known), which is at least the
-/// footprint's. Scores are accurate to some percent: means and spreads under the footprint come from a coarser grid. At
-/// the deadline it stops and says what it has; throws Interrupted if asked to stop.
+/// `map` extends its reach() beyond the positions on every side; its reach is at least the footprint's. Scores are
+/// accurate to some percent: means and spreads under the footprint come from a coarser grid. At the deadline it stops
+/// and returns what it has; throws Interrupted if asked to stop.
 ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);
 

@@ -12,11 +12,11 @@ int tiles_along(int cells, int patch, int overlap, int side) {
   return (places + step - 1) / step;
 }
 
-/// The side of the tiles that take the least work. One that the patch all but fills holds next to no places, and would
-/// take a tile for each few of them.
+/// The side of tiles that takes the least work: a tile hardly larger than the patch has few places, a large one leaves
+/// the caches.
 int best_side(const FloatPlane& plane, int patch, int overlap) {
   const int longest = std::max(512, 2 * (patch + overlap));
-  // Measured: what a cell of a tile costs grows with the tile's side about as this plus the side, as caches run over.
+  // Measured: the cost of a cell is about proportional to this plus the tile's side, as tiles outgrow the caches.
   constexpr double kCellCost = 160.0;
   int best = 0;
   double best_work = 0.0;
@@ -42,7 +42,7 @@ void fill(const FloatPlane& plane, int col, int row, int side, float* out, std::
   }
 }
 
-/// What all cells of the square around (col, row) are, beyond the plane 0; nullopt where they differ.
+/// The value of all cells of the square from (col, row) on, with 0 beyond the plane; nullopt if they differ.
 std::optional<float> only_value(const FloatPlane& plane, int col, int row, int side) {
   if (plane.values.empty()) return 0.0F;
   const bool inside = col >= 0 && row >= 0 && col + side <= plane.cols && row + side <= plane.rows;

@@ -1,5 +1,4 @@
-// Sums over a patch at every place of a plane: the correlation of a large plane with many small patches, by transforms
-// of tiles that fit the cache.
+// The correlation of a large plane with many small patches, at every place, by transforms of tiles that fit the cache.
 #pragma once
 
 #include <cstddef>
@@ -14,28 +13,29 @@ namespace roadfix {
 /// Thread-safe.
 class Correlator {
  public:
-  /// Sums begin so many cells before the plane and end as many after it.
+  /// Places begin so many cells before the plane and end as many after it.
   static constexpr int kLead = 2;
 
-  /// One plane for pairs of patches, or a pair of planes (of the same size) for single patches; `second` is empty for
-  /// one. Patches have at most patch x patch cells. The sums of neighbouring tiles share `overlap` rows or columns.
+  /// Either one plane (`second` is empty), to be correlated with a pair of patches at a time, or two planes of the same
+  /// size, with one patch at a time. Patches have at most patch x patch cells. The sums of neighbouring tiles share
+  /// `overlap` rows or columns.
   Correlator(const FloatPlane& first, const FloatPlane& second, int patch, int overlap = 0);
 
-  /// Planes of side() that are used again and again; what they held is lost.
+  /// Working memory of side(), overwritten by each call.
   struct Workspace {
     ComplexPlane sums, scratch;
     explicit Workspace(int side) : sums(side), scratch(side) {}
   };
 
-  /// The spectrum of a patch, or of two where there is one plane; `second` is empty for one.
+  /// The spectrum of a patch (`second` is empty) or, if there is one plane, of two.
   void spectrum_of(const FloatPlane& first, const FloatPlane& second, Workspace& workspace, Spectrum& spectrum) const;
 
   /// Size of the planes that correlate() gives.
   int sum_cols() const { return cols_ + 2 * kLead; }
   int sum_rows() const { return rows_ + 2 * kLead; }
-  /// Sum over each patch (or over the patch in each plane) at each place where it stays within the plane and its lead,
-  /// else 0; the patch's first cell lies there, and place (0, 0) is (-kLead, -kLead). Turned by half a turn it is the
-  /// patch's last cell, counted in the turned patch.
+  /// The sums of products for each patch (or each plane) with the patch's first cell at each place, 0 where it does not
+  /// stay within the plane and its lead. Element (0, 0) is the place (-kLead, -kLead). With `half_turn` the patch is
+  /// turned by half a turn about its first cell.
   void correlate(const Spectrum& patch_spectrum, bool half_turn, Workspace& workspace, FloatPlanes& result) const;
 
   /// The places of one tile, and its sums there: scale * first[r * stride + c], likewise the second.

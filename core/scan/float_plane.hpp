@@ -1,4 +1,4 @@
-// Numbers in rows, for transforms and scans.
+// A plane of floats, row by row, for transforms and scans.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@ struct FloatPlane {
 
   FloatPlane() = default;
   FloatPlane(int c, int r) : cols(c), rows(r), values(static_cast<std::size_t>(c) * static_cast<std::size_t>(r)) {}
-  /// As large as this; what it holds then is anything.
+  /// Contents are undefined afterwards.
   void resize(int c, int r) {
     cols = c;
     rows = r;
@@ -25,7 +25,7 @@ struct FloatPlane {
   float at(int col, int r) const { return row(r)[col]; }
 };
 
-/// Two planes of the same size are transformed at the cost of one.
+/// Two planes of the same size, which can be transformed at the cost of one.
 struct FloatPlanes {
   FloatPlane first, second;
 };

@@ -11,7 +11,7 @@ namespace {
 int patch_cells(int reach) { return 2 * reach + 1; }
 int patch_blocks(int reach, int block) { return (patch_cells(reach) + block - 1) / block + 1; }
 
-constexpr int kNeighbours = 2;  // peaks are told by both sides of a position
+constexpr int kNeighbours = 2;  // a position's, on both sides, which show whether it is a peak
 
 }  // namespace
 

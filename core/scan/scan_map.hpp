@@ -11,16 +11,16 @@ namespace roadfix {
 /// Thread-safe.
 class ScanMap {
  public:
-  /// For footprints of up to `reach` cells (footprint_reach()). Means and spreads are known per block of
+  /// For footprints of up to `reach` cells (footprint_reach()). Means and spreads are computed per block of
   /// block x block cells: see scan_block().
   ScanMap(const RoadGrid& map, int reach, int block);
 
   const GridGeometry& geometry() const { return geometry_; }
   int reach() const { return reach_; }
   int block() const { return block_; }
-  /// Values less their mean, in cells.
+  /// Of cells: values less their mean.
   const Correlator& values() const { return values_; }
-  /// Observed cells of blocks; their values and squares.
+  /// Of blocks: numbers of observed cells; sums of their values, and of their squares.
   const Correlator& block_observed() const { return block_observed_; }
   const Correlator& block_values() const { return block_values_; }
   std::size_t bytes() const { return values_.bytes() + block_observed_.bytes() + block_values_.bytes(); }
@@ -35,7 +35,7 @@ class ScanMap {
   Correlator values_, block_observed_, block_values_;
 };
 
-/// Cells along the edge of a block that is small against the footprint.
+/// Side of a block, in cells, that is small compared with the footprint.
 int scan_block(const FeatureMap& features);
 
 }  // namespace roadfix

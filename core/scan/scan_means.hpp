@@ -1,4 +1,4 @@
-// The part of a scan's scores that varies slowly: means and spreads under the footprint, known per block of cells.
+// The part of a scan's scores that varies slowly: means and spreads under the footprint, one for each block of cells.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace roadfix {
 
-/// Score = (sum of products - correction) * gain, of the nadir in the middle of each block; between them it is linear.
+/// Score = (sum of products - correction) * gain, for the nadir in the middle of each block; linear in between.
 struct ScanMeans {
   FloatPlane correction, gain;
 };
 
-/// How the positions of a scan, and the cells of its footprints, lie among the blocks that means are known of.
+/// How the positions of a scan, and the cells of its footprints, lie among the blocks of ScanMeans.
 class BlockAlignment {
  public:
   struct Positions {
@@ -26,14 +26,14 @@ class BlockAlignment {
   };
   BlockAlignment(const ScanMap& map, const Positions& positions);
 
-  /// Tap i + 1 tells the columns or rows of ScanMeans that position i (from -1 on) lies between.
+  /// Tap i + 1: the columns or rows of ScanMeans between which position i (from -1 on) lies.
   const InterpolationTaps& col_taps(bool half_turn) const { return col_taps_[half_turn ? 1 : 0]; }
   const InterpolationTaps& row_taps(bool half_turn) const { return row_taps_[half_turn ? 1 : 0]; }
   /// Means over each block of the patch's cells (2 reach + 1 of them along an edge, the nadir in the middle).
   BlockSumPlanes block_means(const CellArray& cells, double mean) const;
 
  private:
-  /// Puts the nadir into the middle of its block (at half_block()).
+  /// Blocks of the patch such that the nadir is in the middle of its block (at half_block()).
   BlockTiling patch_tiling() const;
   int half_block() const { return (block_cells_ - 1) / 2; }
   int nadir_block() const { return (reach_ + patch_tiling().lead_cells) / block_cells_; }
@@ -43,7 +43,7 @@ class BlockAlignment {
   std::array<InterpolationTaps, 2> col_taps_, row_taps_;
 };
 
-/// What a thread uses again and again for means.
+/// The working memory of a thread for means.
 struct ScanMeansWorkspace {
   Correlator::Workspace observed, values;
   Spectrum observed_and_value, square, observed_of_patch;
@@ -56,12 +56,12 @@ struct ScanMeansWorkspace {
         observed_of_patch(values.sums.side()) {}
 };
 
-/// A footprint's side of the means, at one heading and its opposite.
+/// What the means need of a footprint, at one heading and its opposite.
 class ScanMeansPatch {
  public:
   /// `blocks`: BlockAlignment::block_means(). All outlive this.
   ScanMeansPatch(const ScanMap& map, const BlockSumPlanes& blocks, ScanMeansWorkspace& workspace);
-  /// No score where score_of() gives none for these cells.
+  /// The gain is 0 where score_of() gives no score for these cells.
   void at(bool half_turn, const FootprintCells& cells, ScanMeans& means) const;
 
  private:

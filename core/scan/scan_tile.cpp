@@ -41,7 +41,7 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
                     ScanFindings& found) const {
   const bool half_turn = direction.half_turn;
   const Correlator::TileSums sums = map_.values().correlate_tile(tile, buffers.cross, half_turn, buffers.workspace);
-  // Nadir at map cell p: the patch's first cell lies reach before it, turned around reach after it.
+  // With the nadir at map cell p, the patch's first cell is at p - reach; turned by half a turn, at p + reach.
   const int shift = (half_turn ? map_.reach() : -map_.reach()) + Correlator::kLead;
   const auto positions = [&](int place, int count, int lead, int size) {
     const int first = place - lead - shift;
@@ -61,7 +61,7 @@ void TileScan::scan(std::size_t tile, const ScanDirection& direction, float floo
   }
 }
 
-/// The means at the columns of a tile, for the rows of blocks that its rows lie between.
+/// Interpolates the means to the columns of a tile, in the rows of blocks that the tile needs.
 void TileScan::interpolate_means(bool half_turn, const Positions& at, ScanBuffers& buffers) const {
   const InterpolationTaps& row_taps = alignment_.row_taps(half_turn);
   const IndexRange blocks{row_taps.first[static_cast<std::size_t>(at.rows.first + 1)],
@@ -100,7 +100,7 @@ void TileScan::score(bool half_turn, const Positions& at, const Cross& cross, Sc
   }
 }
 
-/// Local maxima among the eight neighbours, and the spread of all scores.
+/// Collects the scores that are maxima among their eight neighbours, and sums the squares of all.
 void TileScan::collect(int bin, const Positions& at, float floor, ScanBuffers& buffers, ScanFindings& found) {
   for (int row = 1; row + 1 < at.rows.count(); ++row) {
     const float* scores = buffers.scores.row(row);

@@ -14,8 +14,8 @@
 
 namespace roadfix {
 
-/// A pair of neighbouring headings as they are, or both turned by half a turn. They share the means and spreads under
-/// the footprint, which hardly change from one to the next, and the two parts of a complex transform.
+/// A pair of neighbouring headings as they are, or both turned by half a turn. The two share means and spreads under
+/// the footprint, which hardly differ between them, and are the two parts of one complex transform.
 struct ScanDirection {
   bool half_turn = false;
   std::array<std::optional<int>, 2> bins{};  ///< nullopt for one that is not asked for
@@ -23,7 +23,7 @@ struct ScanDirection {
   std::size_t count() const;
 };
 
-/// Planes that a thread uses again and again.
+/// The working memory of a thread.
 struct ScanBuffers {
   Spectrum cross;  ///< of the pair's footprints
   Correlator::Workspace workspace;
@@ -50,13 +50,13 @@ class TileScan {
   TileScan(const ScanMap& map, const ScanRequest& request);
 
   const BlockAlignment& alignment() const { return alignment_; }
-  /// Adds the maxima above `floor`, and all scores, to what was found. `buffers` hold the spectrum of the footprints
-  /// and their means in this direction.
+  /// Adds the maxima above `floor`, and the squares of all scores, to `found`. `buffers` hold the spectrum of the
+  /// footprints (cross) and their means in this direction.
   void scan(std::size_t tile, const ScanDirection& direction, float floor, ScanBuffers& buffers,
             ScanFindings& found) const;
 
  private:
-  /// Positions from -1 to cols or rows, so that every position of the request is within some tile's inner part.
+  /// From -1 to cols or rows of the request, so that each of its positions has its neighbours in some tile.
   struct Positions {
     IndexRange cols, rows;
   };

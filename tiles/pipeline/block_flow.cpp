@@ -17,8 +17,8 @@
 namespace roadfix {
 namespace {
 
-/// The first failure of any stage. A pipeline that an exception cancels leaks the blocks in flight (oneTBB 2021.8), so
-/// the stages keep it here, nothing new is begun, and blocks that were read already are still written.
+/// The first failure of any stage. A pipeline that an exception cancels leaks the blocks in flight (oneTBB 2021.8):
+/// stages keep the exception here instead, no new block is begun, and blocks that were read already are still written.
 class FirstFailure {
  public:
   template <typename Work>
@@ -42,8 +42,8 @@ class FirstFailure {
   std::atomic<bool> failed_ = false;
 };
 
-/// Writes blocks as they come, but where they come fast a tenth of a second of them at a time: the disk takes longer to
-/// confirm a transaction than it takes to draw roads. Killed in between, the ingest draws those again.
+/// Writes blocks as they come, but at most ten times a second: roads are drawn faster than a disk confirms
+/// transactions. An ingest that is killed in between has to draw those blocks again.
 class BlockWriter {
  public:
   BlockWriter(const BlockFlow& flow, std::int64_t done, std::int64_t total) : flow_(flow), done_(done), total_(total) {

@@ -1,5 +1,5 @@
-// The blocks of a source on their way into the map: several are read at a time, and those that are there are written.
-// For ingest(); not for other modules.
+// Carries the blocks of a source into the map: several are read at a time, each is written when it is ready. For
+// ingest(); not for other modules.
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ struct BlockFlow {
   const IngestOptions& options;
 };
 
-/// Carries the blocks that are still `open`, of which `done` others of the source were before. Ends early when asked to
-/// stop, and at the first failure of source or writer, which it throws once all that was read by then is written.
-/// Returns the number of observed cells in what was written.
+/// Carries the blocks that are still `open`; `done` others were finished before, for the progress. Ends early when
+/// asked to stop, and at the first failure of source or writer, which it throws after writing what was read by then.
+/// Returns the number of observed cells written.
 std::int64_t carry_blocks(const BlockFlow& flow, std::span<const TileIndex> open, std::int64_t done);
 
 }  // namespace roadfix

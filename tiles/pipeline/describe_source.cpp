@@ -31,7 +31,7 @@ void tell(Provenance& provenance, const UserProvenance& told) {
 
 std::string shown(const std::string& text) { return text.empty() ? "none" : "'" + text + "'"; }
 
-/// Of what the source tells of itself and nobody otherwise.
+/// On what is taken from the source itself.
 std::optional<std::string> note_on_own(const std::string& location, const Provenance& own, const UserProvenance& told) {
   std::vector<std::string> facts;
   std::vector<std::string> options;
@@ -49,7 +49,7 @@ std::optional<std::string> note_on_own(const std::string& location, const Proven
                      fmt::join(facts, ", "), fmt::join(options, ", "));
 }
 
-/// Of something that is told otherwise than before.
+/// Something that differs from what was told before.
 struct Change {
   const char* option;
   std::string text;

@@ -1,5 +1,5 @@
-// Who has the last word about date, licence, attribution and registration error of a source: the user, then what the
-// map was told before of the same content, then the source itself.
+// Where date, licence, attribution and registration error of a source come from: first the user, then what the map was
+// told before of the same content, then the source itself.
 #pragma once
 
 #include <optional>
@@ -20,10 +20,10 @@ struct UserProvenance {
   std::optional<double> registration_sigma_m = {};
 };
 
-/// Completes `record`, which has the registration error of the source, and may state it otherwise. `own` is what the
-/// source tells of itself, `told` what the user does. `before` are the records of this name in the map, the one in
-/// force first: those of the same fingerprint keep what was told of them, unless `replace` describes the source anew.
-/// Returns notes for the user on what is taken from the source, what changes, and what replacing loses.
+/// Fills in the provenance of `record`; its registration error is that of the source, unless told otherwise. `own` is
+/// what the source says of itself, `told` what the user says. `before` are the records of this name in the map, the one
+/// in force first: if the fingerprint is the same, what was told then is kept, unless `replace` describes the source
+/// anew. Returns notes for the user on what is taken from the source, what changes, and what replacing loses.
 std::vector<std::string> describe_source(SourceRecord& record, const Provenance& own, const UserProvenance& told,
                                          std::span<const SourceRecord> before, bool replace);
 

@@ -30,16 +30,16 @@ LatLon centre_of_source(const SourceRequest& request);
 std::unique_ptr<CellSource> open_source(const SourceRequest& request, const MapSettings& settings,
                                         const RoadDetector* detector);
 
-/// What the source says of itself; of another map also what it was told of its own sources. Throws InvalidInput
-/// "map-from-older-version".
+/// What the source says of itself; for a map of roadfix as source also the provenance of its own sources. Throws
+/// InvalidInput "map-from-older-version".
 SourceSummary summary_of(const CellSource& source, const SourceFiles& files);
 
-/// As the source itself has it, but for what `summary.told` holds. `seed` is that of the ingest, which changes the
-/// cells.
+/// With the registration error as its only provenance; describe_source() adds the rest. `seed` is that of the ingest:
+/// it is part of the fingerprint, since it changes the cells.
 SourceRecord record_of(const SourceFiles& files, const SourceSummary& summary, std::uint64_t seed);
 
-/// A new map gets the zone of its first source; around the equator the southern one, whose cells go on for 485 km
-/// beyond it, where those of the northern one end.
+/// A new map gets the zone of its first source. Around the equator that is the southern one: its lattice goes on for
+/// 485 km to the north of it, while that of the northern one ends there.
 MapSettings settings_of_new_map(const SourceRequest& first, double cell_m, const RoadDetector* detector);
 
 }  // namespace roadfix

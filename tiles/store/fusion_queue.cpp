@@ -19,7 +19,7 @@ using sqlite::Transaction;
 
 namespace {
 
-/// Tiles fused in one transaction: as many as keep a reader waiting for a moment only.
+/// Tiles fused in one transaction: few enough for readers not to wait long.
 constexpr int kTilesPerTransaction = 64;
 
 }  // namespace
@@ -46,7 +46,7 @@ std::vector<std::byte> FusionQueue::fused(Tile tile) {
   return encode_tile(*cells, TileDepth::kFused);
 }
 
-/// Tiles of one level, on all processors: most of the work is to pack them.
+/// Tiles of one level, on all processors: most of the work is their compression.
 void FusionQueue::fuse(std::span<const Tile> tiles) {
   std::vector<std::vector<std::byte>> pngs(tiles.size());
   const auto processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
@@ -71,8 +71,8 @@ FusionQueue::Tile FusionQueue::pending_tile(const Statement& row) const {
   return {zoom, {static_cast<int>(row.integer(2)), index_row(static_cast<int>(row.integer(1)), zoom)}};
 }
 
-/// Fuses the next tiles of the finest level that waits, as overviews follow from the tiles of the level before, in one
-/// transaction. Returns how many it did.
+/// Fuses the next tiles of the finest level that has any waiting (overviews are made from the level below) in one
+/// transaction. Returns how many.
 std::int64_t FusionQueue::fuse_some() {
   Transaction transaction(map_, Transaction::Kind::kWrite);
   Statement next(map_,

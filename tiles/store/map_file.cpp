@@ -80,7 +80,7 @@ void require_content(const fs::path& path) {
   }
 }
 
-/// SQLite calls a file that is shorter than its header says corrupt; this says what happened to it.
+/// A file shorter than its header says: SQLite would only call it corrupt.
 void explain_cut_off(const Connection& map) {
   const std::int64_t missing = map.missing_bytes();
   if (missing == 0) return;
@@ -90,7 +90,7 @@ void explain_cut_off(const Connection& map) {
                                 map.path().string(), missing));
 }
 
-/// Reading a map in WAL mode takes files beside it, even where nobody writes.
+/// In WAL mode even a reader has to write files into the map's folder.
 void explain_wal_mode(const Connection& map) {
   if (!map.in_wal_mode()) return;
   throw IoFailure(
@@ -101,7 +101,7 @@ void explain_wal_mode(const Connection& map) {
                   map.path().string()));
 }
 
-/// The first look into the file; undoes what a killed writer left.
+/// Reads from the file for the first time; rolls back what a killed writer left.
 void look_into(Connection& map, std::chrono::milliseconds patience) {
   const Transaction no_writer_between(map, Transaction::Kind::kRead);
   constexpr const char* kLook = "SELECT count(*) FROM sqlite_master";
@@ -123,7 +123,7 @@ void leave_wal_mode(Connection& map) {
   try {
     Statement(map, "PRAGMA journal_mode = DELETE").run();
   } catch (const InUse&) {
-    // Somebody has it open; it can be written to all the same, and the next writer tries again.
+    // Somebody has it open. It can be written to all the same, and the next writer will try again.
   }
 }
 

@@ -68,8 +68,8 @@ struct MapReader::State {
     idle.push_back(std::move(first));
   }
 
-  /// Runs `use` on a channel of its own, in one view of the map as it was opened; as many are opened as threads read at
-  /// once.
+  /// Runs `use` on a channel of its own, within one transaction on the map as it was opened. There are as many channels
+  /// as threads read at once.
   template <typename Use>
   auto with_channel(const Use& use) {
     Channel channel = take();
@@ -97,8 +97,8 @@ struct MapReader::State {
     throw renewed(path, "another file took its place");
   }
 
-  /// Of what was read before, tiles are kept, and others keep what they made of them: nothing of another version may
-  /// come among it. Evidence that is written, or a source that is described otherwise, changes no tile.
+  /// Tiles read before are kept here and by callers; those of another version must not be mixed with them. Writing
+  /// evidence or describing a source anew changes no tile.
   void require_unchanged(Channel& channel) const {
     const sqlite::ResetAtEnd reset(channel.data_version);
     channel.data_version.step();
@@ -132,7 +132,7 @@ struct MapReader::State {
 
   std::filesystem::path path;
   std::chrono::milliseconds patience;
-  std::optional<FileIdentity> file;  ///< that all channels read, whatever has the name by now
+  std::optional<FileIdentity> file;  ///< that all channels read, even if another has the name by now
   std::optional<MapInfo> info;
   TileCache cache;
   std::mutex mutex;

@@ -18,9 +18,8 @@ namespace roadfix {
 
 class MapReader {
  public:
-  /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file at the end of a
-  /// transaction, and from the middle of a large one on. This and all that reads waits for it as long as `patience`,
-  /// then throws InUse ("map-busy").
+  /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file towards the end of its
+  /// transactions. This and all methods that read wait for it as long as `patience`, then throw InUse ("map-busy").
   /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
   /// ("map-not-ours", "map-from-newer-version", "map-from-older-version") or IoFailure.
   explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20,
@@ -29,14 +28,13 @@ class MapReader {
   MapReader(MapReader&&) noexcept;
   MapReader& operator=(MapReader&&) noexcept;
 
-  /// As it was when the map was opened. Tiles are read when they are asked for and kept. Once a writer has changed one,
-  /// what is not kept throws InUse ("map-renewed"), until the map is as it was; a new reader has the map as it is
-  /// then. Another file that takes the place of the map is never read: what needs a descriptor more than there are then
-  /// throws that, too.
+  /// As it was when the map was opened. A reader never mixes versions: once a writer has changed tiles, all that is not
+  /// in the cache throws InUse ("map-renewed"), and a new reader has to be made. Nor does it read another file that
+  /// took the map's place: calls that would have to open it throw that, too.
   const MapInfo& info() const;
 
-  /// Fused cells; geometry.cell_m = settings.cell_m * 2^level with level >= 0, at most 4096 m (levels that the file
-  /// does not hold are made from its coarsest). Unobserved where the map has none. Thread-safe. Throws InvalidInput
+  /// Fused cells, unobserved where the map has none. geometry.cell_m = settings.cell_m * 2^level with level >= 0, at
+  /// most 4096 m; levels that the file does not hold are made from its coarsest. Thread-safe. Throws InvalidInput
   /// ("cell-size-not-in-map") or CorruptData naming the tile.
   RoadGrid read(const GridGeometry& geometry) const;
   /// 0 <= level < info().levels, 0 is the finest. nullopt where the map has no such tile (nothing observed).
@@ -44,8 +42,8 @@ class MapReader {
   /// Row by row from the north-west.
   std::vector<TileIndex> tiles(int level) const;
 
-  /// The largest registration error (1 sigma per axis; SourceStatus) of the sources in force that observed something on
-  /// the tiles of a box, now; nullopt where none did. Thread-safe.
+  /// The largest registration error (1 sigma per axis; SourceStatus) of the sources in force that have evidence on the
+  /// tiles of the box; nullopt if none has. Thread-safe.
   std::optional<double> registration_sigma_m(const GridBox& box) const;
 
   std::size_t cached_bytes() const;
@@ -58,11 +56,11 @@ class MapReader {
 /// nullopt where no file is.
 std::optional<MapInfo> info_of(const std::filesystem::path& path);
 
-/// What the map holds of the source of this name in force; nothing where no file or no such source is.
+/// The blocks of the source of this name in force; none if there is no such file or source.
 std::set<TileIndex> blocks_in_force(const std::filesystem::path& path, const std::string& source);
 
-/// What the map holds of this very source, whole or interrupted: MapWriter::begin_source() would not ask for these
-/// blocks.
+/// The blocks done of the source with this name and fingerprint, complete or not: those that
+/// MapWriter::begin_source() would not ask for.
 std::set<TileIndex> finished_blocks(const std::filesystem::path& path, const SourceRecord& record);
 
 }  // namespace roadfix

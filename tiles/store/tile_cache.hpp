@@ -1,5 +1,5 @@
-// Decoded tiles, least recently used first out, bounded in bytes. Knows absent tiles too, so that asking for one again
-// costs no query. Thread-safe.
+// Decoded tiles, bounded in bytes; drops the least recently used. Also remembers which tiles are absent, which saves a
+// query. Thread-safe.
 #pragma once
 
 #include <cstddef>

@@ -57,7 +57,7 @@ std::vector<std::byte> encoded(const CellArray& cells, TileDepth depth) {
   return encode_grey_png(pack(cells.cells()), shape_of(depth));
 }
 
-/// Of cells that are all alike. Where a map is drawn from roads, up to half of its tiles show country without any.
+/// For cells that are all alike, as up to half of the tiles of a map drawn from road data are.
 std::vector<std::byte> encoded_once(const CellArray& cells, TileDepth depth) {
   static std::mutex mutex;
   static std::map<std::pair<TileDepth, Cell>, std::vector<std::byte>> kept;

@@ -18,8 +18,9 @@ namespace roadfix {
 
 class MapReader {
  public:
-  /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file towards the end of its
-  /// transactions. This and all methods that read wait for it as long as `patience`, then throw InUse ("map-busy").
+  /// `cache_bytes` bounds the decoded tiles that are kept in memory. A writer locks the file at the end of its
+  /// transactions, of large ones earlier. This and all methods that read wait for it as long as `patience`, then throw
+  /// InUse ("map-busy").
   /// Throws NotFound ("map-not-found"), CorruptData ("map-empty-file", "map-cut-off", "map-corrupt"), InvalidInput
   /// ("map-not-ours", "map-from-newer-version", "map-from-older-version") or IoFailure.
   explicit MapReader(const std::filesystem::path& path, std::size_t cache_bytes = std::size_t{256} << 20,

@@ -116,6 +116,15 @@ class LinesOfPictures(unittest.TestCase):
             self.assertAlmostEqual(math.remainder(step["camera_yaw_deg"] - camera_yaw, 360.0), 0.0,
                                    delta=0.01 if camera == "level" else 3.0)
 
+    def test_tell_how_the_camera_leans(self):
+        for camera, roll, pitch in (("level", 0.0, 0.0), ("body", 0.2, 0.1)):
+            self.options.camera = camera
+            self.fly(3.0, roll=0.2)
+            self.lines.add("1.jpg", self.time.now - 0.05)
+            ((step,), _) = self.printed()
+            self.assertAlmostEqual(step["roll_deg"], math.degrees(roll), places=2)
+            self.assertAlmostEqual(step["pitch_deg"], math.degrees(pitch), places=2)
+
     def test_of_a_gimbal_are_left_out_where_it_says_nothing_and_wait_for_what_it_says_later(self):
         self.options.camera, gimbal = "gimbal", Gimbal(154)
         self.lines = self.lines_of(gimbal)

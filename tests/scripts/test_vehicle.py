@@ -108,7 +108,8 @@ class Flights(unittest.TestCase):
     def test_are_no_longer_above_ground_that_the_autopilot_lost(self):
         for name, fields, height_m in (
                 ("ALTITUDE", altitude(math.nan), 80.0), ("ALTITUDE", altitude(-1.0), 80.0),
-                ("ALTITUDE", altitude(math.inf), 80.0),
+                ("ALTITUDE", altitude(math.inf), 80.0), ("ALTITUDE", altitude(0.0), 80.0),
+                ("ALTITUDE", altitude(0.4), 0.4),
                 ("TERRAIN_REPORT", {"spacing": 0, "current_height": 300.0}, 80.0),
                 ("TERRAIN_REPORT", {"spacing": 0, "current_height": 0.0}, 70.0),  # of another place, asked for
                 ("ALTITUDE", altitude(60.0), 60.0)):
@@ -212,6 +213,14 @@ class Flights(unittest.TestCase):
                 self.assertAlmostEqual(east, 20.0 / rate * (1.0 - math.cos(rate * t)), delta=0.1)
                 self.assertAlmostEqual(math.remainder(yaw - rate * t, math.tau), 0.0, places=3)
                 self.assertAlmostEqual(roll, 0.01 * t, places=3)
+
+    def test_bank_as_they_did_last_whatever_comes_late(self):
+        vehicle = Vehicle()
+        for came, sent, roll in ((10.0, 10.0, 0.1), (10.2, 10.2, 0.2), (10.3, 10.1, 0.9), (10.4, 10.4, 0.4)):
+            fields = {"time_boot_ms": round(1e3 * sent), "roll": roll, "pitch": 0.0, "yaw": 0.0}
+            vehicle.hear("ATTITUDE", fields, came)
+        for when, roll in ((10.1, 0.15), (10.2, 0.2), (10.3, 0.3)):
+            self.assertAlmostEqual(vehicle.seen_at(when)[1][0], roll, places=3)
 
     def test_are_not_as_high_as_a_slow_link_tells_later(self):
         vehicle = Vehicle()

@@ -59,6 +59,24 @@ TEST(Filter, DrawsParticlesAroundAProposalAsItsCovarianceSays) {
   }
 }
 
+TEST(Filter, DrawsAsManyParticlesAroundEachProposalAsItsWeightSays) {
+  Filter filter({}, {kSquare}, 7);
+  std::vector<Proposal> proposals;
+  for (const double weight : {0.3, 0.1, 0.2}) {
+    const double at_m = 200.0 * static_cast<double>(proposals.size() + 1);
+    proposals.push_back({{{at_m, at_m}, Angle()}, {}, weight});
+  }
+  filter.start_anew_from(proposals, 0.0, kSquare);
+  const std::vector<double>& drawn = filter.particles().east_m;
+  const auto count = static_cast<double>(drawn.size());
+  for (const Proposal& proposal : proposals) {
+    const double share = proposal.weight / 0.6;
+    EXPECT_NEAR(static_cast<double>(std::ranges::count(drawn, proposal.mean.position.east_m)) / count, share,
+                5.0 * std::sqrt(share * (1.0 - share) / count))
+        << proposal.weight;
+  }
+}
+
 TEST(Filter, DrawsAllParticlesOfACircleWithinIt) {
   PoseRegion circle = kSquare;
   circle.circle = GridCircle{{300.0, 500.0}, 80.0};
@@ -79,7 +97,9 @@ TEST(Filter, MovesCopiesOfAParticleApartAndLeavesWhatWasDrawnOnce) {
   options.adapts_count = false;
   options.effective_share = 1.0;
   options.injected_share = 0.0;
-  Filter filter(options, {kSquare}, 7);
+  AcceptanceRegion region{kSquare};
+  region.max_log_scale = 0.01;
+  Filter filter(options, region, 7);
   filter.start_uniformly(kSquare);
   const Particles before = filter.particles();
   ASSERT_TRUE(filter.correct(std::vector<double>(before.size(), 0.0)).resampled);
@@ -89,7 +109,13 @@ TEST(Filter, MovesCopiesOfAParticleApartAndLeavesWhatWasDrawnOnce) {
   ASSERT_TRUE(filter.correct(only_the_third).resampled);
   const Particles& copies = filter.particles();
   EXPECT_EQ(copies.east_m[0], before.east_m[2]);
-  for (std::size_t i = 1; i < copies.size(); ++i) ASSERT_NE(copies.east_m[i], before.east_m[2]);
+  for (std::size_t i = 1; i < copies.size(); ++i) {
+    ASSERT_NE(copies.east_m[i], before.east_m[2]);
+    ASSERT_NE(copies.north_m[i], before.north_m[2]);
+    ASSERT_NE(copies.heading_rad[i], before.heading_rad[2]);
+    ASSERT_NE(copies.log_scale[i], before.log_scale[2]);
+    ASSERT_LE(std::abs(copies.log_scale[i]), region.max_log_scale);
+  }
   EXPECT_NEAR(distance_m({copies.east_m[1], copies.north_m[1]}, {before.east_m[2], before.north_m[2]}), 0.0,
               6.0 * options.roughening_m);
 }

@@ -61,6 +61,13 @@ TEST(PlanarMotion, FollowsEquation4AsManySmallEulerStepsDo) {
   EXPECT_NEAR(end.heading_rad, euler.heading_rad, 1e-9);
 }
 
+TEST(PlanarMotion, GoesStraightOnWithoutATurn) {
+  const ParticleState end = moved(PlanarMotion{{20.0, 0.0}, {0.0, 0.0}, 4.0}, {5.0, -3.0, kPi / 2.0});
+  EXPECT_NEAR(end.east_m, 85.0, 1e-12);
+  EXPECT_NEAR(end.north_m, -3.0, 1e-12);
+  EXPECT_NEAR(end.heading_rad, kPi / 2.0, 1e-12);
+}
+
 TEST(PlanarMotion, TurnsOnTheSpot) {
   const ParticleState end = moved(PlanarMotion{{0.0, 0.0}, {kPi / 2.0, 0.0}, 1.0}, {1.0, 2.0, 0.0});
   EXPECT_NEAR(end.east_m, 1.0, 1e-12);

@@ -60,6 +60,80 @@ TEST(StepMotion, CountsLostStepsAsLikeThisOne) {
   EXPECT_FALSE(motion.odometry_is_complete());
 }
 
+TEST(StepMotion, TakesTheErrorOfOdometryForThatOfItsOwnStepHoweverManyWereLost) {
+  const VehicleNoise vehicle;
+  const auto error = [&](double seconds, std::int64_t lost_steps) {
+    const ToldMotion told{Odometry{10.0, 0.0, {}}, {}, seconds, lost_steps};
+    return StepMotion(vehicle, kFlight, told, {}).odometry_covariance();
+  };
+  EXPECT_EQ(error(8.0, 3), error(2.0, 0));
+  EXPECT_NE(error(8.0, 3), error(8.0, 0));
+}
+
+/// Where it flew on from (500, 500) to the east for a second, and what it learned.
+std::pair<FilterState, LearnedMotion> coasted(double speed_m_s) {
+  const VehicleNoise vehicle;
+  StepMotion coasting(vehicle, kFlight, {{}, {}, 1.0}, {BodyVelocity{speed_m_s, 0.0}, 0.0, false, false, 0.0});
+  FilterOptions options = FilterOptions::paper(5'000);
+  options.injected_share = 0.0;
+  Filter filter(options, kFlight, 1);
+  filter.start_anew_from(std::vector<Proposal>{{{{500.0, 500.0}, Angle::degrees(90.0)}}}, 0.0, kFlight.poses);
+  coasting.move(filter);
+  return {filter.state(), coasting.learned()};
+}
+
+TEST(StepMotion, GoesOnAsItFlewAndDoubtsHalfOfItsSpeedAndAMetreASecondAtLeast) {
+  for (const auto& [speed_m_s, sigma_m_s] : {std::pair(20.0, 10.0), {1.0, 1.0}, {0.0, 1.0}}) {
+    const Particles p = coasted(speed_m_s).first.particles;
+    const auto n = static_cast<double>(p.size());
+    double east_m = 0.0;
+    double east_m_s = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+      east_m += (p.east_m[i] - 500.0) / n;
+      east_m_s += p.drift_east_m_s[i] / n;
+      squares += p.drift_north_m_s[i] * p.drift_north_m_s[i] / n;
+    }
+    const double five_errors = 5.0 * sigma_m_s / std::sqrt(n);
+    EXPECT_NEAR(east_m, speed_m_s, five_errors);
+    EXPECT_NEAR(east_m_s, speed_m_s, five_errors);
+    EXPECT_NEAR(std::sqrt(squares), sigma_m_s, five_errors);
+  }
+}
+
+TEST(StepMotion, LeavesEachParticleTheWindThatItHas) {
+  VehicleNoise vehicle;
+  vehicle.wind = {3.0};
+  StepMotion motion(vehicle, kFlight, {Odometry{20.0, 0.0, {}}, {}, 1.0}, kFlewAt20MS);
+  FilterOptions options = FilterOptions::paper(1'000);
+  options.injected_share = 0.0;
+  Filter filter(options, motion.region(), 1);
+  filter.start_uniformly(kFlight.poses);
+  const Particles before = filter.particles();
+  motion.move(filter);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    squares += std::pow(filter.particles().drift_east_m_s[i] - before.drift_east_m_s[i], 2.0) / 1'000.0;
+  }
+  EXPECT_NEAR(std::sqrt(squares), 3.0 / std::sqrt(40.0 * 60.0), 0.01) << "it changes by its size in 40 minutes";
+}
+
+TEST(StepMotion, FollowsOdometryAloneOnceItIsToldAgain) {
+  const auto [before, learned] = coasted(20.0);
+  const VehicleNoise vehicle;
+  StepMotion motion(vehicle, kFlight, {Odometry{30.0, 0.0, {}}, OdometryCovariance{}, 1.5}, learned);
+  FilterOptions options = FilterOptions::paper(5'000);
+  options.injected_share = 0.0;
+  Filter filter(options, motion.region(), before);
+  motion.move(filter);
+  const Particles& p = filter.particles();
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    ASSERT_NEAR(p.east_m[i] - before.particles.east_m[i], 30.0 * std::sin(p.heading_rad[i]), 1e-9);
+    ASSERT_NEAR(p.north_m[i] - before.particles.north_m[i], 30.0 * std::cos(p.heading_rad[i]), 1e-9);
+    ASSERT_EQ(p.drift_east_m_s[i], 0.0) << "there is no wind";
+  }
+}
+
 /// By how much particles turn, mean and deviation, when a vehicle that turned so fast tells no motion any more.
 std::pair<double, double> turned_by_deg(double seconds, int steps, double turn_deg_s) {
   const VehicleNoise vehicle;

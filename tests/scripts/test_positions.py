@@ -1,18 +1,21 @@
 #!/usr/bin/python3
 """How old a position is, by whatever tells of it, and what is sent to an autopilot."""
+import json
 import socket
 import struct
 import unittest
+from pathlib import Path
 from unittest import mock
 
 import fake_service  # noqa: F401: the folder of the program
 from words import said
 
-from positions import Sender
+from positions import Sender, told_age_s
 from steps import Line, captured
 
 NOW_S = 5000.0  # since the start of the computer
 DATE_S = 1.7e9
+PACKETS = Path(__file__).resolve().parents[1] / "server/autopilot/node_mavlink_vectors.json"
 
 
 def command(told_s):
@@ -54,6 +57,17 @@ class Ages(unittest.TestCase):
     def test_go_by_the_date_where_the_clock_of_the_computer_is_of_another_one(self):
         for other_s in (NOW_S + 0.1, -0.1):
             self.assertAlmostEqual(self.age_s(2.3, monotonic_s=other_s), 2.3, places=5)
+
+
+class Packets(unittest.TestCase):
+    def test_of_a_public_implementation_tell_how_old_their_position_is(self):
+        packets = json.loads(PACKETS.read_text())
+        for name, packet_format, age_s in (
+                ("global_position_sensor", "global_position_sensor", 0.25),
+                ("global_position_sensor_unknown", "global_position_sensor", 0.0),
+                ("command_int", "command_int", 0.25), ("command_int_unknown", "command_int", 0.0),
+                ("gps_input_3d", "gps_input", 0.0)):
+            self.assertEqual(told_age_s(packet_format, bytes.fromhex(packets[name])), age_s, name)
 
 
 class Senders(unittest.TestCase):

@@ -53,6 +53,15 @@ class Flights(unittest.TestCase):
             self.assertAlmostEqual(roll, 0.1)
         self.assertEqual(vehicle.agl_m(vehicle.heard), 80.0)
 
+    def test_are_between_places_as_far_as_time_has_passed(self):
+        vehicle = Vehicle()
+        for second in range(4):
+            turn(vehicle, 10.0 + second)
+            turn(vehicle, 10.5 + second)
+            move(vehicle, 10.0 + second, north=10.0 * second)  # 10 m/s2
+        for after_s in (1.9, 2.1, 2.9):
+            self.assertAlmostEqual(vehicle.seen_at(10.0 + after_s)[0][0], 5.0 * after_s * after_s, delta=0.5)
+
     def test_by_air_go_where_the_nose_points(self):
         vehicle = Vehicle(by_air=True)
         for i in range(11):

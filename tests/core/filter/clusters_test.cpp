@@ -45,6 +45,29 @@ TEST(Clusters, SeparatePlacesAndHeadingsHeaviestFirst) {
   EXPECT_EQ(heaviest.weight, clusters[0].weight);
 }
 
+TEST(Clusters, AreThoseOfTheirParticlesAloneWhateverTheirShareOfTheWeight) {
+  const Blob heavier{3000, 7000, 40, 8, 3, 0.7};
+  const Blob lighter{4000, 6000, 80, 3, 5, 0.3};
+  Particles both = particles_of({heavier, lighter}, 500);
+  for (std::size_t i = 0; i < both.size(); ++i) both.log_scale[i] = 1e-4 * static_cast<double>(i);
+  const auto clusters = clusters_of(both);
+  ASSERT_EQ(clusters.size(), 2U);
+  for (const std::size_t of : {0U, 1U}) {
+    Particles alone = both;
+    for (std::size_t i = 0; i < both.size(); ++i) alone.weight[i] = i / 500 == of ? 1.0 / 500.0 : 0.0;
+    const Cluster expected = heaviest_of(alone);
+    const Cluster& cluster = clusters[of];
+    EXPECT_NEAR(distance_m(cluster.mean.position, expected.mean.position), 0.0, 1e-6);
+    EXPECT_NEAR(cluster.mean.heading.degrees(), expected.mean.heading.degrees(), 1e-9);
+    EXPECT_NEAR(cluster.sigma_m(), expected.sigma_m(), 1e-6);
+    EXPECT_NEAR(cluster.covariance[2][2], expected.covariance[2][2], 1e-9);
+    EXPECT_NEAR(cluster.radius95_m, expected.radius95_m, 1e-6);
+    EXPECT_NEAR(cluster.log_scale, expected.log_scale, 1e-9);
+    EXPECT_NEAR(cluster.log_scale_sigma, expected.log_scale_sigma, 1e-9);
+  }
+  EXPECT_NEAR(clusters[1].mean.position.north_m, 6000.0, 1.0);
+}
+
 TEST(Clusters, GoRoundSouth) {
   const auto clusters = clusters_of(particles_of({{0, 0, 179.0, 3, 8, 1.0}}, 3000));
   ASSERT_EQ(clusters.size(), 1U);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/filter/cholesky.hpp"
 #include "tests/support/map_view.hpp"
 
 namespace roadfix {
@@ -70,6 +71,19 @@ TEST_F(TrackGeometry, ProposesPlacesAroundTheEllipsesOfAFixAsTheyLieOnTheGrid) {
   const double sigma = std::sqrt(place.covariance[2][2]);
   EXPECT_GT(Angle::radians(sigma).degrees(), 2.0);
   EXPECT_LT(Angle::radians(sigma).degrees(), 3.0 * 2.0);
+}
+
+TEST_F(TrackGeometry, ProposesPlacesAMetreAndHalfADegreeAroundAFixHoweverSureItIs) {
+  FixMode mode;
+  mode.pose = on_earth({place_, Angle::degrees(60.0)}, view_.zone);
+  Fix fix;
+  fix.modes = {mode};
+  const auto proposals = proposals_of(view_, fix, FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0));
+  const PoseCovariance& covariance = proposals.at(0).covariance;
+  EXPECT_TRUE(cholesky(covariance)) << "particles are drawn by it";
+  EXPECT_NEAR(covariance[0][0], 1.0, 1e-9);
+  EXPECT_NEAR(covariance[1][1], 1.0, 1e-9);
+  EXPECT_NEAR(Angle::radians(std::sqrt(covariance[2][2])).degrees(), 0.5, 0.1);
 }
 
 TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadirInTheSizeThatTheGroundHas) {

@@ -151,6 +151,37 @@ TEST(DronePicture, HasTheLensOfItsCalibrationUntilItsDistortionIsTakenOut) {
   EXPECT_THAT(straight.distortion, IsEmpty());
 }
 
+TEST(DronePicture, HasTheLensOfItsCalibrationInThePixelsThatItHas) {
+  const Tags exif{{"EXIF_PixelXDimension", "5472"}, {"EXIF_PixelYDimension", "3648"}};
+  const Tags xmp{{"DewarpFlag", "0"}, {"DewarpData", "2021-05-11;3712,3712,8,-6,-0.112,0.015,0.0001,-0.0003,-0.028"}};
+  const DronePicture smaller = drone_picture({exif, xmp, {1368, 912}});
+  EXPECT_THAT(smaller.focal_px, near_to(928.0));
+  EXPECT_EQ(smaller.principal_px, cv::Point2d(683.5 + 2.0, 455.5 - 1.5)) << "from the middle of the picture";
+}
+
+TEST(DronePicture, IsAsHighAsItIsToldOrElseAboveTheGroundOrElseAboveTheTakeOff) {
+  DronePicture picture = drone_picture({{{"EXIF_FocalLengthIn35mmFilm", "24"}}, {}, kSize});
+  const auto agl_m = [&](std::optional<double> told_m) { return camera_of(picture, {told_m, Angle(), Angle()}).agl_m; };
+  EXPECT_EQ(testing::code_of([&] { agl_m({}); }), "camera-not-in-file");
+  picture.takeoff_m = 98.0;
+  EXPECT_EQ(agl_m({}), 98.0);
+  picture.agl_m = 81.0;
+  EXPECT_EQ(agl_m({}), 81.0);
+  EXPECT_EQ(agl_m(70.0), 70.0);
+}
+
+TEST(DronePicture, LookedWhereItIsToldOrElseWhereItsFileSays) {
+  const DronePicture picture = drone_picture({{{"EXIF_FocalLengthIn35mmFilm", "24"}},
+                                              {{"Camera:Yaw", "0"}, {"Camera:Pitch", "3"}, {"Camera:Roll", "-2"}},
+                                              kSize});
+  const FrameCamera by_file = camera_of(picture, {100.0, {}, {}});
+  EXPECT_NEAR(by_file.pitch.value().degrees(), 3.0, 1e-9);
+  EXPECT_NEAR(by_file.roll.value().degrees(), -2.0, 1e-9);
+  const FrameCamera told = camera_of(picture, {100.0, Angle::degrees(5.0), Angle::degrees(-6.0)});
+  EXPECT_NEAR(told.roll.value().degrees(), 5.0, 1e-9);
+  EXPECT_NEAR(told.pitch.value().degrees(), -6.0, 1e-9);
+}
+
 TEST(DronePicture, HasTheFocalLengthOfItsFieldOfViewInThePixelsThatItHas) {
   Tags exif{{"EXIF_FocalLengthIn35mmFilm", "24"}};
   EXPECT_THAT(of_exif(exif).focal_px, Optional(DoubleNear(3648.0, 1.0)));  // 8.8 mm on 13.2 x 8.8 mm

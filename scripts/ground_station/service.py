@@ -1,9 +1,12 @@
 """HTTP with the service: what it refuses, and patience while it is away or busy."""
 import base64
+import contextlib
 import email.utils
 import http.client
 import json
+import socket
 import sys
+import threading
 import time
 import urllib.parse
 
@@ -116,18 +119,42 @@ class Service:
             kind = http.client.HTTPSConnection if secure else http.client.HTTPConnection
             self._connection = kind(self._url.hostname, self._url.port)
         self._connection.timeout = max(SHORTEST_S, min(ANSWER_TIME_S, 0.5 * left_s))
-        if self._connection.sock is not None:
-            self._connection.sock.settimeout(self._connection.timeout)
+        if self._connection.sock is None:
+            self._connection.connect()
+        self._connection.sock.settimeout(self._connection.timeout)
+
+    @contextlib.contextmanager
+    def _in_time(self):
+        """The time-out of a socket begins anew with each byte: what comes in drops is cut off."""
+        was_cut_off = threading.Event()
+
+        def cut_off(connected=self._connection.sock):
+            was_cut_off.set()
+            with contextlib.suppress(OSError):
+                connected.shutdown(socket.SHUT_RDWR)
+
+        timer = threading.Timer(self._connection.timeout, cut_off)
+        timer.start()
+        try:
+            yield
+        except (OSError, http.client.HTTPException):
+            if not was_cut_off.is_set():
+                raise
+        finally:
+            timer.cancel()
+        if was_cut_off.is_set():
+            raise TimeoutError("timed out")
 
     def _send(self, method, path, body, content_type):
         headers = {"Content-Type": content_type} if content_type else {}
         if self._url.username is not None:
             pair = f"{urllib.parse.unquote(self._url.username)}:{urllib.parse.unquote(self._url.password or '')}"
             headers["Authorization"] = "Basic " + base64.b64encode(pair.encode()).decode()
-        self._connection.request(method, self._url.path.rstrip("/") + path, body, headers)
-        answer = self._connection.getresponse()
-        self.date_s = self._date_s(answer)
-        return answer, answer.read()
+        with self._in_time():
+            self._connection.request(method, self._url.path.rstrip("/") + path, body, headers)
+            answer = self._connection.getresponse()
+            self.date_s = self._date_s(answer)
+            return answer, answer.read()
 
     def _checked(self, answer, content, answer_type):
         """Whatever is in between may answer, too: what asks to log in, or to pay, is no position."""

@@ -1,10 +1,12 @@
 #!/usr/bin/python3
 """The client of ground stations: its patience, and the lines that it reads."""
+import contextlib
 import io
 import json
 import os
 import socket
 import tempfile
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -16,6 +18,26 @@ from words import said
 from service import Service, Silent
 from steps import PICTURE_FIELDS, POSITION_FIELDS, NewestLine, all_lines, read_step
 from track import Track
+
+
+@contextlib.contextmanager
+def dripping(answer):
+    """The address of a service that goes on with this answer ten bytes a second, for five seconds."""
+    def drip(connection):
+        with connection, contextlib.suppress(OSError):
+            connection.sendall(answer)
+            for _ in range(50):
+                connection.sendall(b" ")
+                time.sleep(0.1)
+
+    def accept():
+        with contextlib.suppress(OSError):
+            while True:
+                threading.Thread(target=drip, args=(listening.accept()[0],), daemon=True).start()
+
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        threading.Thread(target=accept, daemon=True).start()
+        yield "http://127.0.0.1:%d" % listening.getsockname()[1]
 
 
 class Patience(unittest.TestCase):
@@ -30,6 +52,17 @@ class Patience(unittest.TestCase):
             silent.settimeout(0.1)
             for _ in range(2):
                 silent.accept()[0].close()
+
+    def test_is_no_longer_with_an_answer_that_comes_in_drops(self):
+        for answer in (b"HTTP/1.1 200 OK\r\nX-Drops: ", b"HTTP/1.1 200 OK\r\nContent-Length: 1000\r\n\r\n",
+                       b"HTTP/1.1 200 OK\r\nConnection: close\r\nContent-Length: 1000\r\n\r\n"):
+            with self.subTest(answer), dripping(answer) as url:
+                service = Service(url, 1.0)
+                self.addCleanup(service.close)
+                began = time.monotonic()
+                with self.assertRaisesRegex(Silent, "timed out"):
+                    service.ask("GET", "/")
+                self.assertLess(time.monotonic() - began, 3.0)
 
     def test_hears_by_repetition_what_took_longer_than_half_of_it(self):
         with FakeService(delay_s=1.0) as fake:

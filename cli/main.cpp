@@ -17,19 +17,20 @@ namespace {
 constexpr int kFailed = 1;
 constexpr int kWrongUsage = 2;
 
-/// What is printed passes through a buffer, whose end may find no room.
-void flush_output() {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
-  throw roadfix::IoFailure("output-unwritable",
-                           "the answer cannot be written to the standard output: check that its disk is not full");
-}
-
 /// Whether or not standard error takes it: there is nobody else to tell, and the exit code says it too.
 void complain(const std::string& text) { std::fputs(text.c_str(), stderr); }
 
 int failed(const roadfix::Error& error) {
   complain(fmt::format("roadfix: {} [{}]\n", error.what(), error.code()));
   return kFailed;
+}
+
+/// What is printed passes through a buffer, whose end may find no room.
+bool is_printed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+int failed_to_print() {
+  return failed(roadfix::IoFailure(
+      "output-unwritable", "the answer cannot be written to the standard output: check that its disk is not full"));
 }
 
 }  // namespace
@@ -61,8 +62,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_serve_command(app);
   try {
     app.parse(argc, argv);
-    flush_output();
-    return 0;
+    return is_printed() ? 0 : failed_to_print();
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& wrong) {
@@ -81,6 +81,7 @@ int main(int argc, char** argv) {
     return failed(
         roadfix::IoFailure("path-refused", fmt::format("{}: {}", error.path1().string(), error.code().message())));
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return failed_to_print();  // what is longer than the buffer
     complain(fmt::format("roadfix: {}\n", error.what()));
     return kFailed;
   }

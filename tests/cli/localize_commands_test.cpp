@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -76,6 +78,14 @@ TEST_F(LocalizeCommands, FixAnswersLikeTheService) {
   EXPECT_NEAR(answer["pose"]["lon"].get<double>(), place.lon_deg, 3e-5);
   EXPECT_NEAR(answer["pose"]["heading_deg"].get<double>(), heading_deg, 1.0);
   EXPECT_EQ(answer["map"]["name"], "town");
+}
+
+TEST_F(LocalizeCommands, FixSaysThatAnAnswerLongerThanABufferFindsNoRoom) {
+  const std::string fix = "fix --json " + input;
+  ASSERT_GT(roadfix(fix).out.size(), 4096U);
+  const std::string err = folder / "err";
+  EXPECT_EQ(WEXITSTATUS(std::system((ROADFIX_PROGRAM " " + fix + ">/dev/full 2>" + err).c_str())), 1);
+  EXPECT_THAT(testing::text_of(err), HasSubstr("[output-unwritable]"));
 }
 
 TEST_F(LocalizeCommands, FixTellsAPersonWhatItsNumbersAre) {

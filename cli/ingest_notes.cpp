@@ -17,15 +17,15 @@ namespace roadfix::cli {
 namespace {
 
 /// What it means and, where `advised`, what to do about it.
-void print_shift_note(const std::string& source, const ShiftReport::Beside& beside, bool advised) {
-  const SourceShift& shift = beside.shift;
+void print_shift_note(const std::string& source, const ShiftReport::Shifted& shifted, bool advised) {
+  const SourceShift& shift = shifted.shift;
   fmt::print(
       stderr,
       "note: '{}' would fit the other sources of the map better about {} from where it lies (correlation of the "
       "roads {:.2f} instead of {:.2f}): places on its ground count as known within {:.3g} m (1 sigma) instead of "
       "{:.3g} m\n",
       source, directions_of(shift), shift.correlation, shift.correlation_in_place, shift.sigma_m,
-      beside.stated_sigma_m);
+      shifted.stated_sigma_m);
   if (!advised) return;
   fmt::print(stderr,
              "      Nobody knows which of them is right, and fewer places are found: check the georeference of both "
@@ -99,9 +99,9 @@ void note_copies(const std::vector<std::string>& twins, const std::string& sourc
 
 void note_shifts(const std::string& source, const ShiftReport& shifts) {
   std::vector<std::string> names;
-  for (const auto& [name, shift] : shifts.beside) names.insert(name == source ? names.begin() : names.end(), name);
+  for (const auto& [name, shift] : shifts.shifted) names.insert(name == source ? names.begin() : names.end(), name);
   for (const std::string& name : names) {
-    print_shift_note(name, shifts.beside.at(name), name == names.front());
+    print_shift_note(name, shifts.shifted.at(name), name == names.front());
   }
   for (const std::string& note : shifts.notes) fmt::print(stderr, "note: {}\n", note);
 }

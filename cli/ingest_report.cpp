@@ -80,7 +80,7 @@ void print_report(nlohmann::json json, const SourceSummary& summary, const MapSe
   json["observed_cells"] = report.observed_cells;
   json["reading_s"] = report.reading_s;
   json["fusing_s"] = report.fusing_s;
-  for (const auto& [name, beside] : report.shifts.beside) json["shifts"][name] = api::to_json(beside.shift);
+  for (const auto& [name, shifted] : report.shifts.shifted) json["shifts"][name] = api::to_json(shifted.shift);
   for (const std::string& note : report.shifts.notes) json["notes"].push_back(note);
   const double share = fresh / static_cast<double>(std::max<std::int64_t>(1, report.blocks));
   const bool lines = summary.is_lines();

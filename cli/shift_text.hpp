@@ -1,4 +1,4 @@
-// A source that lies beside the others, in words.
+// The shift of a source in words.
 #pragma once
 
 #include <string>

@@ -34,9 +34,9 @@ double seconds_since(Clock::time_point start) { return std::chrono::duration<dou
                                  source, settings.zone.epsg()));
 }
 
-/// The source and those that share ground with it. While it is replaced, with what it was.
-std::set<std::string> names_beside(MapWriter& writer, const std::string& source) {
-  const std::vector<std::string> others = writer.sources_beside(source);
+/// The source and those in force that share ground with its version in force.
+std::set<std::string> names_on_ground_of(MapWriter& writer, const std::string& source) {
+  const std::vector<std::string> others = writer.sources_sharing_ground(source);
   std::set<std::string> names(others.begin(), others.end());
   names.insert(source);
   return names;
@@ -75,9 +75,9 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
                     const IngestOptions& options) {
   assert(options.jobs >= 1);
   const std::vector<TileIndex> blocks = plan_blocks(source, record.name, writer.settings());
-  // One that was stopped before it measured leaves that to the next.
+  // An ingest that was stopped before it measured shifts leaves that to the next one.
   std::set<std::string> touched =
-      writer.shifts_outdated() ? writer.sources_in_force() : names_beside(writer, record.name);
+      writer.shifts_outdated() ? writer.sources_in_force() : names_on_ground_of(writer, record.name);
   const std::vector<TileIndex> open = writer.begin_source(record, blocks, options.replace);
   IngestReport report;
   report.blocks = std::ssize(blocks);
@@ -90,7 +90,7 @@ IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWri
   const Clock::time_point fusing = Clock::now();
   writer.finish_source(record.name, options.on_fusing, options.stop);
   report.fusing_s = seconds_since(fusing);
-  touched.merge(names_beside(writer, record.name));
+  touched.merge(names_on_ground_of(writer, record.name));
   report.shifts = measure_shifts(writer, touched, options.on_shifts, options.stop);
   return report;
 }

@@ -34,7 +34,7 @@ struct IngestReport {
   std::int64_t observed_cells = 0;  ///< of the blocks of this run
   double reading_s = 0.0;           ///< reading and detecting
   double fusing_s = 0.0;
-  ShiftReport shifts{};  ///< of this source and those beside it
+  ShiftReport shifts{};  ///< of this source and those on its ground
 };
 
 /// Tiles of the map's lattice that the source touches, row by row from the north-west, at least one. `name`
@@ -44,10 +44,10 @@ std::vector<TileIndex> plan_blocks(const CellSource& source, const std::string& 
 /// Seed of a block's random numbers.
 std::uint64_t block_seed(std::uint64_t seed, TileIndex block);
 
-/// Carries the source into the map or goes on where an earlier call was stopped, and measures which sources of its
-/// ground lie beside the others (source_shift.hpp). `record.fingerprint` must tell everything that changes the cells.
-/// Throws Interrupted "work-stopped" when asked to stop, and whatever source and writer throw; what was finished
-/// until then stays.
+/// Reads the source into the map, or goes on where an earlier call was stopped, and measures which sources on its
+/// ground are shifted against the others (source_shift.hpp). `record.fingerprint` must cover everything that changes
+/// the cells. Throws Interrupted "work-stopped" when asked to stop, and whatever source and writer throw; finished
+/// blocks stay.
 IngestReport ingest(const CellSource& source, const SourceRecord& record, MapWriter& writer,
                     const IngestOptions& options);
 

@@ -15,8 +15,8 @@ struct RemoveReport {
   ShiftReport shifts;      ///< of the sources that are left
 };
 
-/// Takes the source out as MapWriter::remove_source() does, which says what it throws, and measures the others anew: it
-/// may have been what they lay beside. Throws Interrupted "work-stopped"; can be repeated then.
+/// MapWriter::remove_source(), which says what it throws; then measures the shifts of the others anew, since they may
+/// have been shifted against this one. Throws Interrupted "work-stopped"; can be repeated then.
 RemoveReport remove_source(MapWriter& writer, const std::string& source, const OnProgress& on_fusing,
                            const OnProgress& on_shifts, const std::stop_token& stop);
 

@@ -21,8 +21,8 @@ constexpr int kMaxShift = 25;  // steps
 constexpr int kShifts = 2 * kMaxShift + 1;
 constexpr int kSide = kTileCells / kStep;
 
-/// Of a tile, in squares of kStep cells: their observed share, the mean of their probabilities, unobserved cells
-/// counting 0, and the squares of the means of what was observed, weighted by that share like the others.
+/// A tile in squares of kStep cells: their observed share, the mean of their probabilities with unobserved cells as 0,
+/// and the square of the mean over the observed cells, times the observed share.
 struct Planes {
   cv::Mat1f seen;
   cv::Mat1f road;
@@ -88,18 +88,18 @@ class ShiftSums {
   cv::Mat1d ab_ = n_.clone();
 };
 
-/// Counted in steps from no shift.
+/// A shift in steps.
 struct Place {
   int east = 0;
   int north = 0;
 };
 
-/// The best correlation of all shifts but those up to `steps` from a place; nowhere, -1.
 struct Best {
   Place at;
   double correlation = -1.0;
 };
 
+/// The best of all shifts farther than `steps` from a place; a correlation of -1 if there is none.
 Best best_beyond(const ShiftSums& sums, const Place& place, double steps) {
   constexpr double kMinShare = 0.5;  // of the squares in place: a narrow overlap fits somewhere by chance
   const double least = kMinShare * sums.squares(kMaxShift, kMaxShift);
@@ -122,12 +122,12 @@ Best best_beyond(const ShiftSums& sums, const Place& place, double steps) {
 std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, double cell_m) {
   constexpr double kMinCorrelation = 0.15;
   constexpr double kMinGain = 1.3;  // over the correlation in place
-  constexpr double kMinLead = 1.5;  // over all that are kApartM away: chance, a lone road and regular streets have none
+  constexpr double kMinLead = 1.5;  // over all shifts kApartM away: chance, a lone road and regular streets have none
   constexpr double kApartM = 12.0;
   constexpr double kMinSteps = 1.5;
   constexpr double kSigmas = 2.0;
   constexpr double kMinSquares = 4000.0;
-  constexpr double kMinGroundM2 = 0.25e6;  // of 0.1 km^2 two out of three fit somewhere that have nothing in common
+  constexpr double kMinGroundM2 = 0.25e6;  // on 0.1 km^2 two of three unrelated pairs fit somewhere
   const double step_m = kStep * cell_m;
   ShiftSums sums;
   for (const SharedEvidence::Tile& tile : shared_evidence.tiles) sums.add(tile);
@@ -174,7 +174,7 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
       const SharedEvidence shared = writer.shared_evidence(source, others, kTiles);
       const auto shift = shift_of(shared, writer.settings().cell_m);
       measured.emplace(source, shift);
-      if (shift) result.beside.insert({source, {*shift, shared.own_sigma_m}});
+      if (shift) result.shifted.insert({source, {*shift, shared.own_sigma_m}});
       if (!copies.empty()) result.copies.emplace(source, copies);
     } catch (const CorruptData& damage) {
       not_measured[damage.what()].push_back(source);

@@ -11,14 +11,15 @@
 namespace roadfix {
 namespace {
 
-/// Of an observed cell. Sources doubt even where they see none: of much ground with few roads that would be most.
+/// An observed cell's probability, without the slight doubt that sources have everywhere: over much ground with few
+/// roads it would make up most of the sums.
 double road(Cell cell) {
   constexpr double kLeast = 0.1;
   const double p = probability(cell);
   return p < kLeast ? 0.0 : p;
 }
 
-/// Over the cells that both of two sources observed: how many they are, what either says, and both.
+/// Over the cells that both sources observed.
 struct Sums {
   double n = 0.0;
   double a = 0.0;
@@ -26,7 +27,7 @@ struct Sums {
   double aa = 0.0;
   double bb = 0.0;
   double ab = 0.0;
-  double lesser = 0.0;
+  double lesser = 0.0;  ///< of the smaller one of the two in each cell
 
   void add(const CellArray& one, const CellArray& other) {
     for (std::size_t i = 0; i < one.cells().size(); ++i) {
@@ -48,8 +49,8 @@ struct Sums {
     const double variances = (n * aa - a * a) * (n * bb - b * b);
     return variances > 0.0 ? (n * ab - a * b) / std::sqrt(variances) : 0.0;
   }
-  /// The share of the roads of the one that shows fewer which the other has in the same cells: 1 for all, 0 for as many
-  /// as anywhere else.
+  /// How much of the roads of the source with fewer the other one has in the same cells: 1 for all, 0 for no more than
+  /// by chance.
   double contained() const {
     const double fewer = std::min(a, b);
     const double by_chance = a * b;
@@ -79,11 +80,11 @@ bool Witnesses::are_one(const std::string& one, const std::string& other) {
 
 Witnesses::Around Witnesses::around(const std::string& source) {
   std::vector<Witness> all{{source}};
-  for (const std::string& name : writer_->sources_beside(source)) {
+  for (const std::string& name : writer_->sources_sharing_ground(source)) {
     const auto says_the_same = [&](const Witness& witness) {
       return std::ranges::any_of(witness, [&](const std::string& other) { return are_one(name, other); });
     };
-    // It may be what shows that several are one.
+    // It may join several witnesses into one.
     const auto same = std::stable_partition(all.begin(), all.end(), std::not_fn(says_the_same));
     Witness one{name};
     std::for_each(same, all.end(),

@@ -1,6 +1,6 @@
-// Which sources of a map are one witness of where its roads are. What was made of a source lies where that lies: an
-// extract of another date, roads of another provider that took them from the same place, the same image read by another
-// network. If it counted beside it, the two would outvote a third source that is right.
+// Which sources of a map count as one witness of where its roads are. A copy shares the position error of its original:
+// an extract of another date, roads that another provider took over, the same image read by another network. If both
+// counted, they would outvote a third source that is right.
 #pragma once
 
 #include <map>
@@ -13,20 +13,20 @@
 
 namespace roadfix {
 
-/// Whether two sources agree better than two that know nothing of each other do. `shared` says what each has to say.
+/// Whether the two sources in `shared` agree better than independent ones do.
 bool is_copy(const SharedEvidence& shared);
 
 class Witnesses {
  public:
   struct Around {
-    Witness copies;  ///< of the source, and copies of these; without itself
+    Witness copies;  ///< of the source, and copies of its copies; without the source itself
     std::vector<Witness> others;
   };
 
-  /// The map must outlive it, and its sources in force stay what they are.
+  /// The map must outlive this, and its sources in force must not change meanwhile.
   explicit Witnesses(MapWriter& writer) : writer_(&writer) {}
 
-  /// Of the sources that share tiles with this one. Throws what MapWriter::shared_evidence() does.
+  /// Groups the sources that share tiles with this one. Throws what MapWriter::shared_evidence() does.
   Around around(const std::string& source);
 
  private:

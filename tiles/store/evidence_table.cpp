@@ -121,14 +121,14 @@ SharedEvidence EvidenceTable::shared_evidence(const std::string& source, std::sp
   return result;
 }
 
-std::vector<std::string> EvidenceTable::sources_beside(const std::string& source) {
+std::vector<std::string> EvidenceTable::sources_sharing_ground(const std::string& source) {
   std::vector<std::string> names;
-  Statement beside(map_,
-                   "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1) SELECT DISTINCT "
-                   "s.name FROM roadfix_evidence e JOIN roadfix_evidence o ON o.tile_row = e.tile_row AND "
-                   "o.tile_column = e.tile_column JOIN roadfix_sources s ON s.id = o.source_id WHERE e.source_id IN "
-                   "own AND s.in_force = 1 AND s.name <> ?1 ORDER BY s.name");
-  for (beside.with(source); beside.step();) names.push_back(beside.text(0));
+  Statement sharing(map_,
+                    "WITH own AS (SELECT id FROM roadfix_sources WHERE name = ?1 AND in_force = 1) SELECT DISTINCT "
+                    "s.name FROM roadfix_evidence e JOIN roadfix_evidence o ON o.tile_row = e.tile_row AND "
+                    "o.tile_column = e.tile_column JOIN roadfix_sources s ON s.id = o.source_id WHERE e.source_id IN "
+                    "own AND s.in_force = 1 AND s.name <> ?1 ORDER BY s.name");
+  for (sharing.with(source); sharing.step();) names.push_back(sharing.text(0));
   return names;
 }
 

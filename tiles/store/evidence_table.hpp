@@ -31,13 +31,13 @@ class EvidenceTable {
   /// Stores what a source says of a block and marks it as done; nothing is stored of a block without an observed cell.
   /// False where the ledger of the source does not have the block. Part of the caller's transaction.
   bool put(std::int64_t source_id, TileIndex block, const CellArray& cells);
-  /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
+  /// These three: see MapWriter.
   std::vector<std::string> twins_of(const std::string& source);
-  /// These two: see MapWriter.
   SharedEvidence shared_evidence(const std::string& source, std::span<const Witness> witnesses, std::int64_t count);
-  std::vector<std::string> sources_beside(const std::string& source);
-  /// Drops what cannot be read, or stands for no block that the ledger calls done. Returns the sources that lost some,
-  /// each once. Their fingerprint is emptied: they are not what was ingested. Part of the caller's transaction.
+  std::vector<std::string> sources_sharing_ground(const std::string& source);
+  /// Drops evidence that cannot be read, or that belongs to no block that the ledger calls done. Returns the sources
+  /// that lost some, each once; their fingerprints are cleared, since they are no longer what was ingested. Part of the
+  /// caller's transaction.
   std::vector<std::string> drop_damaged();
 
  private:

@@ -40,8 +40,8 @@ struct SourceRecord {
   std::string name;
   SourceContent content = SourceContent::kImagery;
   std::string location = {};  ///< path or connection string as given
-  std::string fingerprint;  ///< changes when the content or any setting that changes the cells does; guards resumption
-  std::string method = {};  ///< detector or drawing rules with all parameters
+  std::string fingerprint;    ///< of the content and of all settings that change the cells; guards resumption
+  std::string method = {};    ///< detector or drawing rules with all parameters
   Provenance provenance = {};
 
   friend bool operator==(const SourceRecord&, const SourceRecord&) = default;
@@ -50,7 +50,7 @@ struct SourceRecord {
 /// Names of sources in force that say the same, and so count as one where others differ.
 using Witness = std::vector<std::string>;
 
-/// What one source says of some tiles, and what others in force say of them together.
+/// The evidence of one source on some tiles, and that of others in force, fused.
 struct SharedEvidence {
   struct Tile {
     CellArray own;
@@ -61,7 +61,7 @@ struct SharedEvidence {
   double others_sigma_m = 0.0;  ///< the largest that these others state
 };
 
-/// Where the roads of a source fit those of the others best, if that is beside where it lies.
+/// How far a source is shifted against the others of its map: moved back, its roads would fit theirs best.
 struct SourceShift {
   double east_m = 0.0;  ///< by which the source would have to be moved
   double north_m = 0.0;
@@ -101,22 +101,22 @@ struct MapInfo {
   std::int64_t tiles = 0;           ///< of the finest level
   int levels = 0;                   ///< finest level and overviews, down to cells of 256 m
   std::int64_t pending = 0;         ///< tiles of all levels that wait to be fused: an ingest was interrupted
-  double error_of_removed_m = 0.0;  ///< 1 sigma per axis, of sources taken out that tiles which wait still show; or 0
+  double error_of_removed_m = 0.0;  ///< 1 sigma per axis, of removed sources that pending tiles still show; else 0
   std::vector<SourceStatus> sources = {};
 };
 
 /// Of the sources of this name, complete or not, the one in force first.
 std::vector<SourceRecord> records_of(const MapInfo& info, const std::string& source);
 
-/// What of the sources is missing, since an ingest was interrupted or goes on: "source 'post': 9 of 16 blocks", and so
-/// on of others; empty where nothing is.
+/// Which sources are incomplete, since an ingest was interrupted or is running: "source 'post': 9 of 16 blocks; ...";
+/// empty if none is.
 std::string missing_of(const MapInfo& info);
 
 /// Of the complete sources together.
 Provenance provenance_of(const MapInfo& info);
 
-/// What the licences of the complete sources ask to be shown beside the map, "attribution (licence)", each once and
-/// separated by "; "; empty where none was told.
+/// What the licences of the complete sources ask to be shown with the map: "attribution (licence)", each once,
+/// separated by "; "; empty if none is known.
 std::string credits_of(const MapInfo& info);
 
 /// Of the complete sources: the detector that read the most tiles of imagery, as RoadDetector::describe() writes it;

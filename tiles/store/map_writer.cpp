@@ -46,8 +46,8 @@ Connection open_with(const std::filesystem::path& path, const MapSettings& setti
   return map;
 }
 
-/// An update of roadfix brings another detector, or takes a file for what it was not before: the same command is
-/// refused then, and should say why.
+/// Why the same command may be refused after an update of roadfix: it has another detector, or takes the file for
+/// something else.
 std::string what_roadfix_changed(const SourceTable::Entry& before, const SourceRecord& now) {
   if (before.content != now.content) {
     return fmt::format(" (as {}; now it is {})", to_string(before.content), to_string(now.content));
@@ -71,7 +71,7 @@ void refuse_other_content(const Connection& map, SourceTable& sources, const Sou
 }  // namespace
 
 struct MapWriter::State {
-  /// `path` is no link, so that all writers of a map meet at one lock, and a new map does not take the place of a link.
+  /// `path` is no link, so that all writers of a map use one lock, and a new map does not replace a link.
   State(const std::filesystem::path& path, const MapSettings& wanted)
       : lock(path),
         made_here(create_if_missing(path, wanted)),
@@ -143,7 +143,7 @@ std::vector<TileIndex> MapWriter::begin_source(const SourceRecord& record, std::
   if (same) {
     if (unfinished) s.sources.remove(unfinished->id);
     s.sources.set_provenance(in_force->id, record);
-    if (in_force->registration_sigma_m != record.provenance.registration_sigma_m) call_shifts_outdated(s.map);
+    if (in_force->registration_sigma_m != record.provenance.registration_sigma_m) mark_shifts_outdated(s.map);
   } else {
     const std::int64_t id = unfinished ? unfinished->id : s.sources.insert(record);
     s.sources.set_provenance(id, record);
@@ -181,7 +181,7 @@ void MapWriter::finish_source(const std::string& source, const OnProgress& progr
       }
       s.fusion.add_source(complete->id);
       s.sources.put_in_force(complete->id);
-      call_shifts_outdated(s.map);
+      mark_shifts_outdated(s.map);
     } else if (!replaced) {
       throw s.no_source(source);
     }
@@ -197,8 +197,8 @@ SharedEvidence MapWriter::shared_evidence(const std::string& source, std::span<c
   return state_->evidence.shared_evidence(source, witnesses, count);
 }
 
-std::vector<std::string> MapWriter::sources_beside(const std::string& source) {
-  return state_->evidence.sources_beside(source);
+std::vector<std::string> MapWriter::sources_sharing_ground(const std::string& source) {
+  return state_->evidence.sources_sharing_ground(source);
 }
 
 std::set<std::string> MapWriter::sources_in_force() {
@@ -216,7 +216,7 @@ void MapWriter::put_shifts(const std::map<std::string, std::optional<SourceShift
 void MapWriter::remove_if_new_and_empty() {
   State& s = *state_;
   if (!s.made_here || Statement(s.map, "SELECT 1 FROM roadfix_blocks WHERE done = 1").step()) return;
-  std::error_code error;  // of no use to who hears of the failure that came before; `verify` calls such a map empty
+  std::error_code error;  // ignored: an earlier failure is being reported, and `verify` calls such a map empty
   std::filesystem::remove(s.map.path(), error);
 }
 
@@ -231,7 +231,7 @@ bool MapWriter::remove_source(const std::string& source, const OnProgress& progr
       if (in_force) {
         remember_error_of_removed(s.map, found->id);
         s.fusion.add_source(found->id);
-        call_shifts_outdated(s.map);
+        mark_shifts_outdated(s.map);
       }
       s.sources.remove(found->id);
       any = true;
@@ -247,7 +247,7 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   State& s = *state_;
   Transaction transaction(s.map, Transaction::Kind::kWrite);
   std::vector<std::string> lost = s.evidence.drop_damaged();
-  // What waits follows from the evidence in force, all of which is fused anew.
+  // All evidence in force is fused anew, so that nothing else has to wait.
   for (const char* sql : {"DELETE FROM roadfix_pending",
                           "DELETE FROM gpkg_2d_gridded_tile_ancillary WHERE tpudt_name = 'road_probability'",
                           "DELETE FROM road_probability"}) {
@@ -255,7 +255,7 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   }
   Statement(s.map, "UPDATE roadfix_meta SET value = ?1 WHERE key = 'version'").with(version_text(0)).run();
   for (const auto& [id, name] : s.sources.in_force()) s.fusion.add_source(id);
-  if (!lost.empty()) call_shifts_outdated(s.map);
+  if (!lost.empty()) mark_shifts_outdated(s.map);
   s.fusion.update_extent();
   transaction.commit();
   s.fusion.drain(progress, stop);

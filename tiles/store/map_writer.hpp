@@ -37,56 +37,56 @@ class MapWriter {
   /// The map as it is. Throws NotFound ("map-not-found") where no file is, and what the constructor does.
   static MapWriter existing(const std::filesystem::path& path);
 
-  /// Throws what the constructor and begin_source() would throw about the map's settings and the source's name, but
-  /// writes nothing: for a plan.
+  /// For a dry run: throws what the constructor and begin_source() would throw about the map's settings and the
+  /// source's name, but writes nothing.
   static void require_acceptable(const std::filesystem::path& path, const MapSettings& settings,
                                  const SourceRecord& record, bool replace);
 
   /// Starts a source over these blocks (a block is one tile of the finest level) or resumes it: an incomplete source
-  /// with the same name and fingerprint keeps its finished blocks. A complete one with the same name and fingerprint
-  /// needs nothing. Another fingerprint under that name is refused (InvalidInput "source-exists") unless `replace`. The
-  /// replaced evidence stays in force until finish_source. Returns the blocks still to do, in the order given.
+  /// with the same name and fingerprint keeps its finished blocks, a complete one needs nothing. Another fingerprint
+  /// under that name is refused (InvalidInput "source-exists") unless `replace`; the replaced evidence stays in force
+  /// until finish_source(). Returns the blocks still to do, in the order given.
   std::vector<TileIndex> begin_source(const SourceRecord& record, std::span<const TileIndex> blocks, bool replace);
 
-  /// Records finished blocks in one transaction: each of these waits for the disk. Call from one thread at a time.
-  /// Throws InvalidInput ("block-not-expected") where the source has not begun with one of them; none is recorded then.
+  /// Records finished blocks in one transaction, which waits for the disk. Call from one thread at a time. Throws
+  /// InvalidInput ("block-not-expected") if begin_source() was not given one of them; none is recorded then.
   void put_blocks(const std::string& source, std::span<const FinishedBlock> blocks);
 
-  /// All blocks are there: puts the source in force, fuses the tiles it (or what it replaced) touches and their
-  /// overviews. Can be interrupted and repeated.
+  /// Call when all blocks are done: puts the source in force, and fuses the tiles that it or the source it replaces
+  /// touches, with their overviews. Can be interrupted and repeated.
   void finish_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
-  /// Sources in force, other than this one, that say the same wherever it says anything, cell by cell.
+  /// Other sources in force that have the same cells wherever this one has any.
   std::vector<std::string> twins_of(const std::string& source);
 
-  /// Of up to `count` tiles, spread evenly over those that the source shares with the witnesses, of which each counts
-  /// once, however many sources in force it is. Throws CorruptData naming the tile.
+  /// Up to `count` tiles, spread evenly over those that the source shares with the witnesses. A witness counts once,
+  /// however many sources in force it consists of. Throws CorruptData naming the tile.
   SharedEvidence shared_evidence(const std::string& source, std::span<const Witness> witnesses, std::int64_t count);
 
-  /// Other sources in force that say something of a tile that this one in force does, too.
-  std::vector<std::string> sources_beside(const std::string& source);
+  /// Other sources in force that have evidence of a tile of which this one, in force, has any.
+  std::vector<std::string> sources_sharing_ground(const std::string& source);
 
   std::set<std::string> sources_in_force();
 
-  /// Whether sources came, went or were replaced since put_shifts(), so that any of those in force may lie beside the
-  /// others or not by now: finish_source() or remove_source() was stopped, or what should follow it. So they may where
-  /// begin_source() states another registration error, or repair() drops evidence.
+  /// Whether something changed since put_shifts() that shifts depend on: a source came, went or was replaced
+  /// (finish_source(), remove_source()), begin_source() stated another registration error, or repair() dropped
+  /// evidence.
   bool shifts_outdated();
-  /// Tells the map which of these sources in force lie beside the others; nullopt for one that does not.
+  /// Stores how these sources in force are shifted against the others; nullopt for one that is not.
   void put_shifts(const std::map<std::string, std::optional<SourceShift>>& shifts);
 
-  /// Removes the file where this writer made it and no block was finished since: a first ingest that failed at once
-  /// leaves no map. Nothing but the destructor may be called afterwards.
+  /// Removes the file if this writer made it and no block is finished, so that a first ingest that fails at once leaves
+  /// no map. Nothing but the destructor may be called afterwards.
   void remove_if_new_and_empty();
 
-  /// Takes a source out of the map, complete or not, and fuses what it touched. Can be interrupted and repeated: then
-  /// it only goes on fusing, and returns false. Throws NotFound ("source-not-found") where nothing is left to fuse, nor
-  /// shifts_outdated().
+  /// Takes a source out of the map, complete or not, and fuses the tiles that it touched. Can be interrupted: if called
+  /// again it goes on fusing and returns false. Throws NotFound ("source-not-found") where there is neither the source
+  /// nor a tile left to fuse, and shifts are not outdated.
   bool remove_source(const std::string& source, const OnProgress& progress = {}, std::stop_token stop = {});
 
-  /// Fuses every tile anew from the evidence. Evidence that cannot be decoded is dropped first; returns the names of
-  /// the sources that lost some, which count as changed from now on: ingest them again with `replace`. Readers see the
-  /// map grow back meanwhile. Can be interrupted and repeated.
+  /// Drops evidence that cannot be decoded and fuses every tile anew from the rest. Returns the names of the sources
+  /// that lost some, which count as changed from now on: ingest them again with `replace`. Readers see the map grow
+  /// back meanwhile. Can be interrupted and repeated.
   std::vector<std::string> repair(const OnProgress& progress = {}, std::stop_token stop = {});
 
  private:

@@ -11,7 +11,7 @@ using sqlite::Transaction;
 
 }  // namespace
 
-void call_shifts_outdated(Connection& map) {
+void mark_shifts_outdated(Connection& map) {
   map.execute("INSERT OR REPLACE INTO roadfix_meta (key, value) VALUES ('shifts_outdated', '1')");
 }
 

@@ -1,5 +1,5 @@
-// Which sources of a map file lie beside the others (table roadfix_shifts). Shared by reader, writer and verifier; not
-// for other modules.
+// Which sources of a map file are shifted against the others (table roadfix_shifts). Shared by reader, writer and
+// verifier; not for other modules.
 #pragma once
 
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace roadfix {
 
-/// Says, as part of the caller's transaction, that the sources in force are others than those that were measured.
-void call_shifts_outdated(sqlite::Connection& map);
+/// Records, as part of the caller's transaction, that put_shifts() has to be called again: see
+/// MapWriter::shifts_outdated().
+void mark_shifts_outdated(sqlite::Connection& map);
 bool shifts_outdated(sqlite::Connection& map);
 
-/// Of sources in force, by their names; nullopt for one that fits the others, or of which that cannot be told. From
-/// then on they count as measured.
+/// Of sources in force, by name; nullopt for one that fits the others, or for which that cannot be decided. Shifts are
+/// no longer outdated then.
 void put_shifts(sqlite::Connection& map, const std::map<std::string, std::optional<SourceShift>>& shifts);
 
 /// Of sources in force, by their names.
@@ -29,8 +30,8 @@ std::map<std::string, SourceShift> read_shifts(sqlite::Connection& map);
 inline constexpr std::string_view kRegistrationInForce =
     "max(s.registration_sigma_m, coalesce((SELECT sigma_m FROM roadfix_shifts h WHERE h.source_id = s.id), 0))";
 
-/// Says, as part of the caller's transaction and before tiles wait for it, that a source is taken out: until they are
-/// fused they show it, as far off as it lies.
+/// Keeps the registration error of a source that is about to be taken out, since tiles show the source until they are
+/// fused anew. Part of the caller's transaction, before it queues those tiles.
 void remember_error_of_removed(sqlite::Connection& map, std::int64_t source_id);
 
 /// The largest error so remembered, m (1 sigma per axis); 0 where no tile waits.

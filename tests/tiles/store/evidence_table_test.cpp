@@ -108,10 +108,10 @@ TEST(EvidenceTable, NamesTheOtherSourcesInForceOfTheSameTiles) {
   ingest(writer, {"b", 2, some_blocks(2, 1)});
   ingest(writer, {"far", 3, some_blocks(1, 5)});
   writer.begin_source(TestSource{"unfinished", 4, some_blocks(1)}.record(), some_blocks(1), false);
-  EXPECT_EQ(writer.sources_beside("a"), std::vector<std::string>{"b"});
-  EXPECT_EQ(writer.sources_beside("b"), std::vector<std::string>{"a"});
-  EXPECT_TRUE(writer.sources_beside("far").empty());
-  EXPECT_TRUE(writer.sources_beside("unfinished").empty());
+  EXPECT_EQ(writer.sources_sharing_ground("a"), std::vector<std::string>{"b"});
+  EXPECT_EQ(writer.sources_sharing_ground("b"), std::vector<std::string>{"a"});
+  EXPECT_TRUE(writer.sources_sharing_ground("far").empty());
+  EXPECT_TRUE(writer.sources_sharing_ground("unfinished").empty());
 }
 
 }  // namespace

@@ -130,6 +130,9 @@ TrackFile::TrackFile(const std::filesystem::path& path, std::int64_t max_bytes, 
     transaction.commit();
   });
   identity_ = identity_of(path_);
+  // Before a flight nothing else shows it: tracks begin in what room there is.
+  const auto room = free_bytes_(path_);
+  if (room && *room < kLogBytes) problem_ = full(path_, max_bytes, room).what();
 }
 
 double TrackFile::filled() {

@@ -49,7 +49,7 @@ class TrackFile {
   /// What failed before is over. A track that begins is too small to show that.
   void has_room() { problem_.reset(); }
 
-  /// What failed last, or that the file was deleted; nullopt where nothing did.
+  /// What failed last, that the file was deleted, or that its disk was full when it was opened; else nullopt.
   std::optional<std::string> problem() const;
 
  private:

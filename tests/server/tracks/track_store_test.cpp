@@ -231,6 +231,15 @@ TEST(TrackStore, AdvisesToEndTracksWhereItsLimitIsReachedButNotWhereTheDiskIsFul
   }
 }
 
+TEST(TrackStore, SaysBeforeTheFirstStepThatItsDiskIsFullAndNoLongerOnceAStepIsStored) {
+  const testing::TemporaryFolder folder;
+  TrackStore store(folder / "tracks.sqlite", kPlenty, [](const auto&) { return 100'000; });
+  store.add(track("a"));
+  EXPECT_THAT(store.problem(), ::testing::Optional(HasSubstr("their disk has 0 MiB free")));
+  ASSERT_TRUE(store.add_step("a", 5, state(100), {0, 0, "first"}));
+  EXPECT_FALSE(store.problem());
+}
+
 TEST(TrackStore, IsHeldByOneServiceAtATime) {
   const testing::TemporaryFolder folder;
   auto first = std::make_unique<TrackStore>(folder / "tracks.sqlite", kPlenty);

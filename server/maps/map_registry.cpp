@@ -117,13 +117,13 @@ MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
   Stamp stamp;
   struct stat file = {};
   if (::stat(path.c_str(), &file) == 0) {
-    stamp.modified = nanoseconds(file.st_mtim);
+    stamp.changed = nanoseconds(file.st_ctim);
     stamp.size = static_cast<std::uintmax_t>(file.st_size);
     stamp.inode = file.st_ino;
   }
   struct stat wal = {};
   if (::stat((path.string() + "-wal").c_str(), &wal) == 0) {
-    stamp.wal_modified = nanoseconds(wal.st_mtim);
+    stamp.wal_changed = nanoseconds(wal.st_ctim);
     stamp.wal_size = static_cast<std::uintmax_t>(wal.st_size);
   }
   return stamp;

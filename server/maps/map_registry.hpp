@@ -75,11 +75,11 @@ class MapRegistry {
   std::size_t search_cached_bytes() const;
 
  private:
-  /// What tells that a file may have changed.
+  /// What tells that a file may have changed. Its date does not: `cp -p` writes into a file and gives it an older one.
   struct Stamp {
-    std::int64_t modified = 0;
+    std::int64_t changed = 0;
     std::uintmax_t size = 0;
-    std::int64_t wal_modified = 0;
+    std::int64_t wal_changed = 0;
     std::uintmax_t wal_size = 0;
     std::uint64_t inode = 0;
     friend bool operator==(const Stamp&, const Stamp&) = default;

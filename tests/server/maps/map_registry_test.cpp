@@ -80,6 +80,23 @@ TEST(MapRegistry, KeepsTheReaderOfAFileThatWasOnlyTouched) {
   EXPECT_EQ(registry.find("city"), before);
 }
 
+TEST(MapRegistry, NoticesAFileIntoWhichOneOfTheSameSizeAndDateWasCopied) {
+  const TemporaryFolder folder;
+  const fs::path path = folder / "city.gpkg";
+  const fs::path other = folder / "other";
+  make_map(path, 1);
+  fs::copy_file(path, other);
+  roadfix::testing::open_sqlite(other).execute(
+      "UPDATE roadfix_meta SET value = '0123456789abcdef' WHERE key = 'version'");
+  ASSERT_EQ(fs::file_size(other), fs::file_size(path));
+  MapRegistry registry(folder.path(), kCache);
+  const fs::file_time_type date = fs::last_write_time(path);
+  fs::copy_file(other, path, fs::copy_options::overwrite_existing);
+  fs::last_write_time(path, date);
+  registry.refresh();
+  EXPECT_EQ(registry.find("city")->view.id.version, "0123456789abcdef");
+}
+
 TEST(MapRegistry, KeepsAMapThatAWriterHasLockedAsItWasAndItsReadersWaitOnlyASecond) {
   using Clock = std::chrono::steady_clock;
   const TemporaryFolder folder;

@@ -124,6 +124,7 @@ TEST(DronePicture, WasTakenNowhereWhereItsDegreesAreToldToSixDigitsOnly) {
   const Tags xmp{{"GpsLatitude", "-37.7599041"}, {"GpsLongitude", "+126.1234567"}};
   EXPECT_NEAR(drone_picture({exif, xmp, kSize}).place.value().lon_deg, 126.1234567, 1e-9);
   exif["EXIF_GPSLatitude"] = "(38) (0) (0)";
+  EXPECT_FALSE(of_exif(exif).place) << "its longitude alone is cut";
   exif["EXIF_GPSLongitude"] = "(126) (7.40741) (0)";
   EXPECT_NEAR(of_exif(exif).place.value().lon_deg, 126.1234568, 1e-7) << "10 cm are nothing to speak of";
   EXPECT_EQ(of_exif(exif).place.value().lat_deg, -38.0);

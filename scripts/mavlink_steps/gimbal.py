@@ -55,7 +55,6 @@ class Gimbal:
         size = math.hypot(*quaternion)
         if when is None or not math.isfinite(size) or size == 0.0:
             return
-        quaternion = tuple(part / size for part in quaternion)
         from_north, heading = _is_from_north(fields["flags"]), _heading(fields)
         if heading is not None:
             from_north, quaternion = False, _yawed(quaternion, -heading)

@@ -38,10 +38,19 @@ class OtherPlaces : public ::testing::Test {
     calibration.position_sigma_scale = errors.position_sigma_scale;
     sort_out_other_places(view, calibration, errors.nadir_m, found);
   }
-  bool counts_nearby(double east_m, const Errors& errors) const {
+  /// In whatever direction it lies.
+  bool counts_nearby(double away_m, const Errors& errors) const {
+    const bool counts = counts_nearby_towards(Angle(), away_m, errors);
+    for (const double direction : {45.0, 90.0, 200.0}) {
+      EXPECT_EQ(counts_nearby_towards(Angle::degrees(direction), away_m, errors), counts) << direction;
+    }
+    return counts;
+  }
+  bool counts_nearby_towards(Angle direction, double away_m, const Errors& errors) const {
     SearchResult result = found();
     result.modes.front().scale = errors.scale;
-    result.nearby = mode(east_m, 0.6);
+    result.nearby = mode(away_m * sin(direction), 0.6);
+    result.nearby->pose.position.north_m += away_m * cos(direction);
     sort_out(result, errors);
     const bool counts = result.modes.size() == 3;
     EXPECT_EQ(result.modes.at(1).score, counts ? 0.6 : 0.4);

@@ -116,6 +116,13 @@ class LinesOfPictures(unittest.TestCase):
             self.assertAlmostEqual(math.remainder(step["camera_yaw_deg"] - camera_yaw, 360.0), 0.0,
                                    delta=0.01 if camera == "level" else 3.0)
 
+    def test_tell_headings_from_0_to_360_degrees_after_any_turn(self):
+        for yaw in (2.0, -2.5, -0.5, 0.5):
+            self.fly(2.0, yaw=yaw)
+        self.lines.add("1.jpg", self.time.now - 0.05)
+        ((step,), _) = self.printed()
+        self.assertAlmostEqual(step["yaw_deg"], math.degrees(0.5), places=2)
+
     def test_tell_how_the_camera_leans(self):
         for camera, roll, pitch in (("level", 0.0, 0.0), ("body", 0.2, 0.1)):
             self.options.camera = camera

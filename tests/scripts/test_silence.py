@@ -95,6 +95,15 @@ class Restarts(Flights):
             self.fly(self.client(), 2)
             check()
 
+    def test_are_looked_at_once_whatever_pauses_come_after_them(self):
+        self.fly(self.client(), 1)
+        track = self.client()
+        for step in (2, 3):
+            self.fly(track, step)
+            self.pass_s(700.0)
+        self.assertEqual([step["sequence"] for step in self.fake.steps()], [1, 2, 3])
+        self.assertEqual(len(self.fake.begun()), 1)
+
     def test_while_the_service_has_long_been_away_are_of_the_same_flight(self):
         track = self.client(patience_s=0.2)
         self.fly(track, 1)

@@ -37,28 +37,6 @@ void require_pixels_with_area(const RasterFile& file) {
                                  file.path(), fmt::join(to_reference, ", ")));
 }
 
-PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
-  require_known_datum(file.crs(), target, file.path());
-  require_pixels_with_area(file);
-  const GdalMessages messages;
-  CPLStringList options;
-  options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());
-  options.SetNameValue("DST_SRS", wkt(target).c_str());
-  // Of the scene's mean height: hills are misplaced by their share of the view's slant. With a terrain model at hand,
-  // gdalwarp -rpc -to RPC_DEM=... makes an orthoimage first.
-  const char* height = file.dataset().GetMetadataItem("HEIGHT_OFF", "RPC");
-  if (height != nullptr) options.SetNameValue("RPC_HEIGHT", height);
-  PixelTransformerPtr transformer(
-      GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List()));
-  if (!transformer) {
-    throw InvalidInput(
-        "crs-not-transformable",
-        fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", file.path(),
-                    crs_name(file.crs()), crs_name(target), messages.text(), kGiveRightCrs));
-  }
-  return transformer;
-}
-
 void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_source) {
   const GdalMessages messages;
   const std::size_t count = points.size();
@@ -77,6 +55,54 @@ void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_sour
     const bool finite = good[i] != FALSE && std::isfinite(x[i]) && std::isfinite(y[i]);
     points[i] = finite ? cv::Point2d(x[i], y[i]) : cv::Point2d(kNowhere, kNowhere);
   }
+}
+
+/// West, south, east and north of the image in degrees, as GDAL wants them. Left to itself GDAL (3.6) counts the
+/// longitudes from the prime meridian of the reference system, finds no way from its datum around there, and leaves the
+/// datum as it is. Empty where it cannot be told.
+std::string area_of_interest(const RasterFile& file) {
+  const GdalMessages messages;
+  const PixelTransformerPtr to_reference(
+      GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, nullptr));
+  if (!to_reference) return "";
+  std::vector<cv::Point2d> points;
+  for (const double row : {0.0, 0.5, 1.0}) {
+    for (const double col : {0.0, 0.5, 1.0}) points.emplace_back(col * file.size().width, row * file.size().height);
+  }
+  transform(to_reference.get(), points, false);
+  const TransformationPtr to_earth = transformation(file.crs(), wgs84_reference(), file.path());
+  OGREnvelope area;
+  for (const cv::Point2d& point : points) {
+    double lon = point.x;
+    double lat = point.y;
+    if (to_earth->Transform(1, &lon, &lat) == FALSE) return "";
+    area.Merge(lon, lat);
+  }
+  return fmt::format("{},{},{},{}", area.MinX, area.MinY, area.MaxX, area.MaxY);
+}
+
+PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
+  require_known_datum(file.crs(), target, file.path());
+  require_pixels_with_area(file);
+  const GdalMessages messages;
+  CPLStringList options;
+  options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());
+  options.SetNameValue("DST_SRS", wkt(target).c_str());
+  const std::string area = on_old_ellipsoid(file.crs()) ? area_of_interest(file) : "";
+  if (!area.empty()) options.SetNameValue("AREA_OF_INTEREST", area.c_str());
+  // Of the scene's mean height: hills are misplaced by their share of the view's slant. With a terrain model at hand,
+  // gdalwarp -rpc -to RPC_DEM=... makes an orthoimage first.
+  const char* height = file.dataset().GetMetadataItem("HEIGHT_OFF", "RPC");
+  if (height != nullptr) options.SetNameValue("RPC_HEIGHT", height);
+  PixelTransformerPtr transformer(
+      GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List()));
+  if (!transformer) {
+    throw InvalidInput(
+        "crs-not-transformable",
+        fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", file.path(),
+                    crs_name(file.crs()), crs_name(target), messages.text(), kGiveRightCrs));
+  }
+  return transformer;
 }
 
 [[noreturn]] void nowhere(const RasterFile& file, const std::string& target) {

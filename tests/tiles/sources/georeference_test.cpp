@@ -28,6 +28,28 @@ TEST_F(GeoreferenceTest, WithoutGeoreferenceItSaysWhatToDo) {
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
 }
 
+TEST_F(GeoreferenceTest, LiesWhereVectorsOfItsReferenceSystemLieWhateverTheirPrimeMeridian) {
+  struct Place {
+    int epsg;
+    double lat_deg;
+    double lon_deg;
+  };
+  for (const auto& [epsg, lat_deg, lon_deg] :
+       {Place{31288, 47.2, 10.7}, Place{20790, 39.5, -7.9}, Place{27391, 60.5, 6.0}, Place{27572, 46.7, -3.5}}) {
+    OGRSpatialReference crs;
+    crs.importFromEPSG(epsg);
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    double x = lon_deg;
+    double y = lat_deg;
+    ASSERT_TRUE(transformation(wgs84_reference(), crs, "")->Transform(1, &x, &y));
+    const std::array<double, 6> around{x - 32.0, 1.0, 0.0, y + 32.0, 0.0, -1.0};
+    const LatLon centre =
+        centre_of(RasterFile(write_raster(folder / "a.tif", {.epsg = epsg, .transform = around}, grey), {}));
+    EXPECT_NEAR(centre.lat_deg, lat_deg, 1e-5) << epsg;
+    EXPECT_NEAR(centre.lon_deg, lon_deg, 1e-5) << epsg;
+  }
+}
+
 TEST_F(GeoreferenceTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";

@@ -1,7 +1,12 @@
 #include "tiles/sources/coordinate_limits.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <numbers>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
 namespace {
@@ -44,6 +49,15 @@ CoordinateLimits coordinate_limits(const OGRSpatialReference& crs) {
   if (crs.IsGeographic() == FALSE) return {kPlaneM / crs.GetLinearUnits(), kPlaneM / crs.GetLinearUnits()};
   const double turn = 2.0 * std::numbers::pi / crs.GetAngularUnits() * kRounding;
   return {turn, turn / 4.0};
+}
+
+void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+  constexpr CoordinateLimits kDegrees{360.0, 90.0};
+  if (!kDegrees.hold(box) || crs.IsProjected() == FALSE) return;
+  throw InvalidInput("degrees-as-metres",
+                     fmt::format("{}: its reference system {} has metres or feet, but its coordinates, {} {} to {} {}, "
+                                 "look like degrees: give --crs EPSG:4326",
+                                 path, crs_name(crs), box.MinX, box.MinY, box.MaxX, box.MaxY));
 }
 
 }  // namespace roadfix

@@ -4,6 +4,8 @@
 
 #include <ogrsf_frmts.h>
 
+#include <string>
+
 namespace roadfix {
 
 /// On either side of zero, in the units of a reference system; for its coordinates with x east or longitude first.
@@ -19,5 +21,9 @@ struct CoordinateLimits {
 /// A turn and a quarter of one for longitudes and latitudes. The plane of a projection ends for each elsewhere: far
 /// beyond all of them.
 CoordinateLimits coordinate_limits(const OGRSpatialReference& crs);
+
+/// Throws InvalidInput "degrees-as-metres" where the coordinates of a projected reference system could all be
+/// longitudes and latitudes.
+void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
 
 }  // namespace roadfix

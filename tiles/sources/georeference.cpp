@@ -9,8 +9,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/detect/frame.hpp"
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/coordinate_limits.hpp"
 
 namespace roadfix {
 namespace {
@@ -35,6 +37,21 @@ void require_pixels_with_area(const RasterFile& file) {
                      fmt::format("{}: its geotransform ({}) gives its pixels no area, so that nothing says where they "
                                  "lie; gdal_translate -a_ullr WEST NORTH EAST SOUTH makes a copy with the right one",
                                  file.path(), fmt::join(to_reference, ", ")));
+}
+
+/// No camera's pixels are as fine in metres as pixels of degrees look there.
+void require_no_degrees_as_metres(const RasterFile& file) {
+  std::array<double, 6> t{};
+  if (file.dataset().GetGeoTransform(t.data()) != CE_None) return;
+  const double side_m = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4])) * file.crs().GetLinearUnits();
+  if (side_m >= kFinestGsdM) return;
+  OGREnvelope box;
+  for (const int col : {0, file.size().width}) {
+    for (const int row : {0, file.size().height}) {
+      box.Merge(t[0] + t[1] * col + t[2] * row, t[3] + t[4] * col + t[5] * row);
+    }
+  }
+  refuse_degrees_as_metres(box, file.crs(), file.path());
 }
 
 void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_source) {
@@ -84,6 +101,7 @@ std::string area_of_interest(const RasterFile& file) {
 PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
   require_known_datum(file.crs(), target, file.path());
   require_pixels_with_area(file);
+  require_no_degrees_as_metres(file);
   const GdalMessages messages;
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());

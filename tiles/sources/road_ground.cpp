@@ -8,6 +8,7 @@
 
 #include "core/grid/geometry.hpp"
 #include "core/units/error.hpp"
+#include "tiles/sources/coordinate_limits.hpp"
 #include "tiles/sources/stray_roads.hpp"
 
 namespace roadfix {
@@ -38,15 +39,6 @@ void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialRefer
 }
 
 }  // namespace
-
-void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
-  const bool degrees = box.MinX >= -360.0 && box.MaxX <= 360.0 && box.MinY >= -90.0 && box.MaxY <= 90.0;
-  if (!degrees || crs.IsProjected() == FALSE) return;
-  throw InvalidInput("degrees-as-metres",
-                     fmt::format("{}: its reference system {} has metres or feet, but its coordinates, {} {} to {} {}, "
-                                 "look like degrees: give --crs EPSG:4326",
-                                 path, crs_name(crs), box.MinX, box.MinY, box.MaxX, box.MaxY));
-}
 
 void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer) {
   const std::optional<OGREnvelope> box = layer.extent_seen();

@@ -15,9 +15,7 @@
 
 namespace roadfix {
 
-/// Throws InvalidInput "degrees-as-metres" where the coordinates of a projected reference system could all be
-/// longitudes and latitudes: none has its roads within 360 m of its origin.
-void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
+/// Throws as that of coordinate_limits.hpp: no projected reference system has its roads within 360 m of its origin.
 void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer);
 
 /// Throws InvalidInput "crs-not-transformable" where most lines have coordinates of no place on Earth, which is more

@@ -14,6 +14,7 @@
 #include "core/units/error.hpp"
 #include "core/units/shell_word.hpp"
 #include "tiles/sources/bare_rim.hpp"
+#include "tiles/sources/coordinate_limits.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"

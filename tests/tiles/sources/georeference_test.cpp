@@ -50,6 +50,16 @@ TEST_F(GeoreferenceTest, LiesWhereVectorsOfItsReferenceSystemLieWhateverTheirPri
   }
 }
 
+TEST_F(GeoreferenceTest, DegreesAreNotTakenForMetres) {
+  const auto code_where = [&](const std::array<double, 6>& transform) {
+    const std::string path = write_raster(folder / "a.tif", {.transform = transform}, grey);
+    return code_of([&] { centre_of(RasterFile(path, {})); });
+  };
+  EXPECT_EQ(code_where({38.26, 5e-6, 0, 37.76, 0, -5e-6}), "degrees-as-metres");
+  EXPECT_EQ(code_where({38.26, 0.05, 0, 37.76, 0, -0.05}), "no error")
+      << "a site of a few metres around its own origin";
+}
+
 TEST_F(GeoreferenceTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";

@@ -23,9 +23,15 @@ DatasetPtr open_raster(const std::string& path, std::optional<int> overview) {
   return open_dataset(path, GDAL_OF_RASTER, options.List());
 }
 
+/// That of an image that was only given a reference system: its coordinates are columns and rows.
+bool counts_pixels(const std::array<double, 6>& transform) {
+  return transform == std::array{0.0, 1.0, 0.0, 0.0, 0.0, 1.0} ||
+         transform == std::array{0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
+}
+
 bool has_transform(GDALDataset& dataset) {
   std::array<double, 6> transform{};
-  if (dataset.GetGeoTransform(transform.data()) == CE_None) return true;
+  if (dataset.GetGeoTransform(transform.data()) == CE_None && !counts_pixels(transform)) return true;
   return dataset.GetGCPCount() >= 3 || dataset.GetMetadata("RPC") != nullptr;
 }
 
@@ -40,6 +46,10 @@ std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
     OGRSpatialReference crs;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     if (crs.importFromESRI(lines.List()) == OGRERR_NONE) return crs;
+    throw InvalidInput("image-without-georeference",
+                       fmt::format("{}: holds no reference system in the WKT of ESRI ({}), which a .prj file does; "
+                                   "name it with --crs of ingest, for example --crs EPSG:32637",
+                                   file, messages.text()));
   }
   return std::nullopt;
 }

@@ -28,6 +28,16 @@ TEST_F(GeoreferenceTest, WithoutGeoreferenceItSaysWhatToDo) {
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
 }
 
+TEST_F(GeoreferenceTest, ColumnsAndRowsAreNoCoordinates) {
+  for (const double down : {1.0, -1.0}) {
+    const std::array<double, 6> identity{0, 1, 0, 0, 0, down};
+    const std::string path = write_raster(folder / "a.tif", {.transform = identity}, grey);
+    EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  }
+  const std::array<double, 6> at_the_origin{0, 2, 0, 0, 0, -2};
+  EXPECT_NO_THROW(RasterFile(write_raster(folder / "a.tif", {.transform = at_the_origin}, grey), {}));
+}
+
 TEST_F(GeoreferenceTest, LiesWhereVectorsOfItsReferenceSystemLieWhateverTheirPrimeMeridian) {
   struct Place {
     int epsg;
@@ -87,6 +97,8 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
   std::ofstream(folder / "a.prj") << "nonsense";
   EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  EXPECT_THAT(testing::message_of([&] { RasterFile(path, {}); }),
+              ::testing::HasSubstr((folder / "a.prj").string() + ": holds no reference system"));
   const std::string nonsense = fingerprint({path}, "");
   std::ofstream(folder / "a.prj")
       << R"(PROJCS["WGS_1984_UTM_Zone_37N",GEOGCS["GCS_WGS_1984",DATUM["D_WGS_1984",SPHEROID["WGS_1984",6378137.0,)"

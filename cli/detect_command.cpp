@@ -82,10 +82,22 @@ struct Picture {
   std::optional<Place> place;
 };
 
+/// Most pictures that do not tell where they lie are frames whose camera was not told.
+UtmZone zone_of_picture(const std::string& image) {
+  try {
+    return zone_of_image(image);
+  } catch (const InvalidInput& error) {
+    if (error.code() != "image-without-georeference") throw;
+    throw InvalidInput(
+        error.code(),
+        fmt::format("{}. Of a frame tell the scale: --gsd, --exif, or --agl with --fov or --focal-px", error.what()));
+  }
+}
+
 Picture read_picture(const DetectOptions& options, const std::string& image, const RoadDetector& detector) {
   if (options.frame.given()) return {ground_seen(options.frame, image, detector), {}};
   require_not_empty(image);
-  const UtmZone zone = zone_of_image(image);
+  const UtmZone zone = zone_of_picture(image);
   Orthoimage ortho = read_orthoimage(image, zone);
   return {{vertical_view(std::move(ortho.image))}, Place{zone, ortho.north_west}};
 }

@@ -245,7 +245,8 @@ TEST_F(DetectCommand, SaysInOneLineThatANetworkCannotBeRun) {
 TEST_F(DetectCommand, SaysWhatIsMissing) {
   const ProgramResult nowhere = detect("");
   EXPECT_EQ(nowhere.code, 1);
-  EXPECT_THAT(nowhere.err, HasSubstr("[image-without-georeference]"));
+  EXPECT_THAT(nowhere.err, AllOf(HasSubstr("Of a frame tell the scale: --gsd, --exif, or --agl"),
+                                 HasSubstr("[image-without-georeference]")));
   EXPECT_EQ(detect("--fov 90").code, 2);
   EXPECT_EQ(detect("--agl 100").code, 2);
   EXPECT_EQ(detect("--fov 90 --focal-px 100 --agl 100").code, 2);

@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -103,12 +106,14 @@ PositionError error_of_placing(const RasterFile& file, UtmZone zone) {
                       file.path(), kRpcSigmaM)};
 }
 
-bool known_to(double accuracy_m, const OGRSpatialReference& from, const OGRSpatialReference& to, LatLon place) {
+/// Whether there is a way around the place, and of that accuracy if one is given.
+bool has_way(const OGRSpatialReference& from, const OGRSpatialReference& to, LatLon place,
+             std::optional<double> accuracy_m = {}) {
   constexpr double kAroundDeg = 0.05;
   const GdalMessages messages;
   OGRCoordinateTransformationOptions options;
   options.SetBallparkAllowed(false);
-  options.SetDesiredAccuracy(accuracy_m);
+  if (accuracy_m) options.SetDesiredAccuracy(*accuracy_m);
   options.SetAreaOfInterest(place.lon_deg - kAroundDeg, place.lat_deg - kAroundDeg, place.lon_deg + kAroundDeg,
                             place.lat_deg + kAroundDeg);
   return TransformationPtr(OGRCreateCoordinateTransformation(&from, &to, options)) != nullptr;
@@ -121,9 +126,9 @@ PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, La
   constexpr std::array<double, 9> kStatedM{3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 35.0, 50.0};
   if (!on_old_ellipsoid(reference)) return {};
   const OGRSpatialReference plane = utm_reference(zone);
-  if (known_to(kNothingM, reference, plane, place)) return {};
+  if (has_way(reference, plane, place, kNothingM)) return {};
   const auto stated_m = std::ranges::partition_point(
-      kStatedM, [&](double accuracy_m) { return !known_to(accuracy_m, reference, plane, place); });
+      kStatedM, [&](double accuracy_m) { return !has_way(reference, plane, place, accuracy_m); });
   if (stated_m == kStatedM.end()) return {};
   return {*stated_m, fmt::format("{}: the way from its reference system {} to WGS 84 is known to {:g} m only, and so "
                                  "uncertain is where it lies (1 sigma). With the grids of its survey (Debian: "
@@ -134,7 +139,17 @@ PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, La
 
 PositionErrors position_errors(const RasterFile& file, UtmZone zone) {
   PositionErrors errors{error_of_placing(file, zone), {}};
-  if (on_old_ellipsoid(file.crs())) errors.datum = datum_error(file.crs(), zone, centre_of(file), file.path());
+  if (!on_old_ellipsoid(file.crs())) return errors;
+  const LatLon place = centre_of(file);
+  if (!has_way(file.crs(), utm_reference(zone), place)) {
+    // GDAL would leave the datum as it is, without a word.
+    throw InvalidInput("datum-unknown",
+                       fmt::format("{}: no way from the datum of its reference system {} to WGS 84 is known around "
+                                   "latitude {:.2f} and longitude {:.2f}, so the roads could be hundreds of metres "
+                                   "off: {}; a PROJ string with +towgs84 will do, too",
+                                   file.path(), crs_name(file.crs()), place.lat_deg, place.lon_deg, kGiveRightCrs));
+  }
+  errors.datum = datum_error(file.crs(), zone, place, file.path());
   return errors;
 }
 

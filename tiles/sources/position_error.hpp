@@ -25,6 +25,7 @@ struct PositionErrors {
   PositionError datum;  ///< adds to what placed the raster in its reference system
 };
 
+/// Throws InvalidInput "datum-unknown" where nobody has published a way from its datum to WGS 84 around there.
 PositionErrors position_errors(const RasterFile& file, UtmZone zone);
 
 }  // namespace roadfix

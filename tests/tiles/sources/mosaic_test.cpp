@@ -229,6 +229,16 @@ TEST_F(MosaicTest, CoordinatesWithoutAPlaceInTheZoneAreRefused) {
   }
 }
 
+TEST_F(MosaicTest, AnOldDatumNeedsAWayToWgs84AroundThere) {
+  const RasterSpec damascus{.epsg = 0, .transform = std::array<double, 6>{6797000, 1, 0, 3711000, 0, -1}};
+  const std::string path = write_raster(folder / "a.tif", damascus, [](int, int, int) { return 1.0; });
+  const auto code_in = [&](const std::string& crs) {
+    return testing::code_of([&] { Mosaic({path}, {.crs = crs, .collar = {}}, ValueRule::kPicture, kZone); });
+  };
+  EXPECT_EQ(code_in("EPSG:28406"), "datum-unknown") << "Pulkovo 1942, to which ways are known elsewhere";
+  EXPECT_EQ(code_in("+proj=tmerc +lon_0=33 +x_0=6500000 +ellps=krass +towgs84=28,-130,-95 +no_defs"), "no error");
+}
+
 TEST_F(MosaicTest, AnOldEllipsoidNeedsADatumToLieAnywhere) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0}, [](int, int, int) { return 1.0; });
   const auto west = [&](const std::string& crs) {

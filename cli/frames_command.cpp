@@ -14,6 +14,7 @@
 #include "cli/command.hpp"
 #include "cli/output_file.hpp"
 #include "cli/picture_files.hpp"
+#include "core/detect/frame_camera.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/sources/drone_picture.hpp"
@@ -64,9 +65,10 @@ std::string lacks(const DronePicture& picture, const std::optional<double>& agl_
     missing.emplace_back(
         "its focal length (DewarpData, CalibratedFocalLength or FocalLengthIn35mmFilm, of a picture that was not cut)");
   }
-  if (missing.empty() && picture.doubt) return "its file " + picture.doubt->what;
-  if (missing.empty() && *agl_m <= 0.0) return fmt::format("it was taken {:.1f} m above ground", *agl_m);
-  return missing.empty() ? "" : fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
+  if (!missing.empty()) return fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
+  if (picture.doubt) return "its file " + picture.doubt->what;
+  if (*agl_m <= 0.0) return fmt::format("it was taken {:.1f} m above ground", *agl_m);
+  return looks_down(camera_of(picture, {agl_m, {}, {}})) ? "" : "its camera looked at the horizon or the sky";
 }
 
 bool fits_a_cell(std::string_view text) {
@@ -154,7 +156,7 @@ void run_frames(const FramesOptions& options) {
                "heights are those above the take-off: if it lay higher or lower than the ground in the pictures, "
                "say by how much with --takeoff-agl\n");
   }
-  require_none(unread, files.size());
+  if (unread > 0) require_none(files.size() - frames.size(), files.size());
 }
 
 }  // namespace

@@ -89,9 +89,11 @@ std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Point2d ray)
   return cv::Point2d(level[0], level[1]) * (camera.agl_m / level[2]);
 }
 
+bool looks_down(const FrameCamera& camera) { return down(camera) >= cos(kFlattestView); }
+
 /// Angles of gimbals and autopilots that call straight down -90 degrees would look at the horizon.
 void require_looking_down(const FrameCamera& camera) {
-  if (down(camera) >= cos(kFlattestView)) return;
+  if (looks_down(camera)) return;
   throw InvalidInput(
       "frame-sees-no-ground",
       fmt::format(

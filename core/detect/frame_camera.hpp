@@ -60,7 +60,9 @@ cv::Matx33d level_from_camera(const FrameCamera& camera);
 std::optional<cv::Point2d> ground_of(const FrameCamera& camera, cv::Point2d ray);
 
 inline constexpr Angle kFlattestView = Angle::degrees(80.0);
-/// Throws InvalidInput ("frame-sees-no-ground") where the optical axis is farther from straight down than that.
+/// Whether the optical axis is not farther from straight down than that.
+bool looks_down(const FrameCamera& camera);
+/// Throws InvalidInput ("frame-sees-no-ground") where it is.
 void require_looking_down(const FrameCamera& camera);
 
 /// Ground sample distance straight below the UAV with the camera level. Throws as validate().

@@ -73,20 +73,25 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
   picture("good.jpg", tags(120.0));
   picture("bare.jpg", "");
   picture("ground.jpg", tags(-1.0));
+  std::string ahead = tags(120.0);
+  picture("ahead.jpg", ahead.replace(ahead.find("-87.0"), 5, "-5.0"));
   picture("a,b.jpg", tags(120.0));
   picture("a\"b.jpg", tags(120.0));
   const ProgramResult result = frames("'" + (folder / "flight 1").string() + "'");
   EXPECT_EQ(result.code, 0);
-  EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground"))));
+  EXPECT_THAT(result.out,
+              AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground")), Not(HasSubstr("ahead"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("bare.jpg is left out: its file does not tell its place"),
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
+                                HasSubstr("ahead.jpg is left out: its camera looked at the horizon or the sky"),
                                 HasSubstr("a,b.jpg is left out: no table of frames can hold the commas"),
-                                HasSubstr("a\"b.jpg is left out: no table of frames"), HasSubstr("1 of 5 pictures"),
+                                HasSubstr("a\"b.jpg is left out: no table of frames"), HasSubstr("1 of 6 pictures"),
                                 HasSubstr("--takeoff-agl")));
 }
 
 TEST_F(FramesCommand, LeavesOutDamagedAndMissingFilesAndTellsByItsExitCode) {
   picture("good.jpg", tags(120.0));
+  picture("bare.jpg", "");
   std::ofstream(folder / "flight 1" / "empty.jpg").flush();
   std::ofstream(folder / "flight 1" / "text.JPG") << "no picture";
   const std::string place = "'" + (folder / "flight 1").string() + "'";
@@ -94,9 +99,9 @@ TEST_F(FramesCommand, LeavesOutDamagedAndMissingFilesAndTellsByItsExitCode) {
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.out, AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("empty")), Not(HasSubstr("text"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("empty.jpg is left out: the file is empty"),
-                                HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 4 pictures"),
+                                HasSubstr("text.JPG is left out: cannot be opened ("), HasSubstr("1 of 5 pictures\n"),
                                 HasSubstr("nothere.jpg is left out: no such file"), HasSubstr("[file-not-found]"),
-                                HasSubstr("[pictures-left-out]")));
+                                HasSubstr("4 of 5 pictures were left out"), HasSubstr("[pictures-left-out]")));
 }
 
 TEST_F(FramesCommand, WritesNoTableThatItsNamesBreak) {

@@ -127,6 +127,14 @@ PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, La
   if (!on_old_ellipsoid(reference)) return {};
   const OGRSpatialReference plane = utm_reference(zone);
   if (has_way(reference, plane, place, kNothingM)) return {};
+  if (!has_way(reference, plane, place)) {
+    // GDAL would take a way that is meant for elsewhere, or leave the datum as it is, without a word.
+    throw InvalidInput("datum-unknown",
+                       fmt::format("{}: no way from the datum of its reference system {} to WGS 84 is known around "
+                                   "latitude {:.2f} and longitude {:.2f}, so the roads could be hundreds of metres "
+                                   "off: {}; a PROJ string with +towgs84 will do, too",
+                                   path, crs_name(reference), place.lat_deg, place.lon_deg, kGiveRightCrs));
+  }
   const auto stated_m = std::ranges::partition_point(
       kStatedM, [&](double accuracy_m) { return !has_way(reference, plane, place, accuracy_m); });
   if (stated_m == kStatedM.end()) return {};
@@ -139,17 +147,7 @@ PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, La
 
 PositionErrors position_errors(const RasterFile& file, UtmZone zone) {
   PositionErrors errors{error_of_placing(file, zone), {}};
-  if (!on_old_ellipsoid(file.crs())) return errors;
-  const LatLon place = centre_of(file);
-  if (!has_way(file.crs(), utm_reference(zone), place)) {
-    // GDAL would leave the datum as it is, without a word.
-    throw InvalidInput("datum-unknown",
-                       fmt::format("{}: no way from the datum of its reference system {} to WGS 84 is known around "
-                                   "latitude {:.2f} and longitude {:.2f}, so the roads could be hundreds of metres "
-                                   "off: {}; a PROJ string with +towgs84 will do, too",
-                                   file.path(), crs_name(file.crs()), place.lat_deg, place.lon_deg, kGiveRightCrs));
-  }
-  errors.datum = datum_error(file.crs(), zone, place, file.path());
+  if (on_old_ellipsoid(file.crs())) errors.datum = datum_error(file.crs(), zone, centre_of(file), file.path());
   return errors;
 }
 

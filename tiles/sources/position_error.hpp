@@ -15,7 +15,7 @@ struct PositionError {
 
 /// Of the datum of a reference system around a place: what the EPSG registry states for the best way to WGS 84 that can
 /// be taken there, if that is more than 2 m. 0 for reference systems that bring a way of their own, and where the
-/// registry states nothing.
+/// registry states nothing. Throws InvalidInput "datum-unknown" where nobody has published any way around there.
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path);
 
 struct PositionErrors {
@@ -25,7 +25,7 @@ struct PositionErrors {
   PositionError datum;  ///< adds to what placed the raster in its reference system
 };
 
-/// Throws InvalidInput "datum-unknown" where nobody has published a way from its datum to WGS 84 around there.
+/// Throws as datum_error() does.
 PositionErrors position_errors(const RasterFile& file, UtmZone zone);
 
 }  // namespace roadfix

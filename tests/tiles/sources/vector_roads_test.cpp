@@ -53,6 +53,15 @@ TEST_F(VectorRoads, OnAnOldEllipsoidNeedADatumToLieAnywhere) {
   EXPECT_EQ(testing::code_of([&] { centre_of_roads({path}, options); }), "datum-unknown");
 }
 
+TEST_F(VectorRoads, NeedAWayFromTheirDatumAroundWhereTheyLie) {
+  const std::string path = (folder / "damascus.geojson").string();
+  std::ofstream(path) << R"({"type":"Feature","properties":{"highway":"primary"},"geometry":{"type":"LineString",)"
+                      << R"("coordinates":[[6797000,3711000],[6797300,3711100]]}})";
+  VectorOptions options;
+  options.crs = "EPSG:28406";  // Pulkovo 1942, from which ways are known elsewhere
+  EXPECT_EQ(testing::code_of([&] { open_road_vectors({path}, options, RoadRules(), kZone, 2.0); }), "datum-unknown");
+}
+
 TEST_F(VectorRoads, AreAsUncertainAsTheWayFromTheirDatum) {
   // The registry states 20 m of PSAD56 in Chile, 5 m of SAD69 in Brazil and 2 m of ED50 in Turkey.
   const auto summary_of = [&](const char* crs, double lon, double lat, int zone) {

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
@@ -30,6 +31,38 @@ TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
     EXPECT_LT(angular_distance(estimate.clusters[0].pose.heading, heading).degrees(), 4.0);
   });
   EXPECT_LT(state_.filter.particles.size(), 4000U);
+}
+
+/// That much of its weight is 300 m to the north of where it was, as if it had parted.
+TrackerState parted(TrackerState state, double share) {
+  std::vector<double>& north_m = state.filter.particles.north_m;
+  const auto count = static_cast<std::ptrdiff_t>(share * static_cast<double>(north_m.size()));
+  std::for_each(north_m.begin(), north_m.begin() + count, [](double& place_m) { place_m += 300.0; });
+  return state;
+}
+
+TEST_F(Track, ClaimsNoPlaceThatItHasGoneOverToBeforeASearchAndALook) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 1);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(state_.claim.is_told_apart() && state_.claim.looked_time_us);
+  state_.last_search = state_.measured;
+  const StepInput step = flight.step();
+  EXPECT_TRUE(tracker.advance(state_, step).estimate.converged);
+  const StepResult gone_over = tracker.advance(parted(state_, 0.7), step);
+  EXPECT_LT(error_m(gone_over.estimate, flight.pose()), 15.0);
+  EXPECT_FALSE(gone_over.estimate.converged);
+  EXPECT_FALSE(gone_over.state.claim.confirmed || gone_over.state.claim.looked_time_us);
+}
+
+TEST_F(Track, ClaimsNoPlaceAgainBeforeALookWhereItPartedUnseen) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 1);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  StepInput unseen = flight.step();
+  unseen.features.reset();
+  EXPECT_TRUE(tracker.advance(state_, unseen).state.claim.looked_time_us);
+  EXPECT_FALSE(tracker.advance(parted(state_, 0.5), unseen).state.claim.looked_time_us);
 }
 
 TEST_F(Track, CountsHowWellTheNadirIsKnownInItsAccuracy) {

@@ -63,6 +63,13 @@ TEST(FlightSummary, CountsRunsFoundLostAndWronglyConverged) {
   EXPECT_EQ(to_json(s)["claims"]["false_steps"], 10);
 }
 
+TEST(FlightSummary, KeepsItsColumnsApartWhereClaimsAreKilometresOff) {
+  Summary s;
+  s.claims = s.false_claims = 22;
+  s.nees_mean = 22522178.4;
+  EXPECT_THAT(to_table(std::vector<std::pair<std::string, Summary>>{{"paper", s}}, {}), HasSubstr("22/22  22522178.4"));
+}
+
 TEST(FlightSummary, TellsHowLongAKidnappingWentUnnoticedAndUntilTheVehicleWasFoundAgain) {
   const std::vector<double> errors =
       joined(joined(many(20, -5.0), many(3, -2000.0)), joined(many(7, 2000.0), many(20, -5.0)));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "cli/evaluation/nees.hpp"
 #include "cli/evaluation/statistics.hpp"
@@ -163,12 +164,12 @@ nlohmann::json to_json(const Summary& s) {
 }
 
 std::string to_table(std::span<const std::pair<std::string, Summary>> summaries, const Events& events) {
-  std::string table = fmt::format("{:<11}{:>6}{:>7}{:>14}{:>16}{:>16}{:>7}{:>15}{:>13}{:>12}{:>7}{:>15}\n", "filter",
-                                  "runs", "found", "updates (90%)", "error m (90%)", "final m (90%)", "wrong",
-                                  "claims (at)", "false steps", "NEES", "in 95", "ms/step (95%)");
+  constexpr std::string_view kRow = "{:<11}{:>6}{:>7}{:>14}{:>16}{:>16}{:>7}{:>15}{:>13}{:>12}{:>7}{:>15}\n";
+  std::string table = fmt::format(kRow, "filter", "runs", "found", "updates (90%)", "error m (90%)", "final m (90%)",
+                                  "wrong", "claims (at)", "false steps", "NEES", "in 95", "ms/step (95%)");
   for (const auto& [name, s] : summaries) {
-    table += fmt::format("{:<11}{:>6}{:>7}{:>14}{:>16}{:>16}{:>7}{:>15}{:>13}{:>12}{:>7}{:>15}\n", name, s.runs,
-                         s.found, fmt::format("{} ({})", text(s.updates_median, 0), text(s.updates_p90, 0)),
+    table += fmt::format(kRow, name, s.runs, s.found,
+                         fmt::format("{} ({})", text(s.updates_median, 0), text(s.updates_p90, 0)),
                          fmt::format("{} ({})", text(s.error_median_m), text(s.error_p90_m)),
                          fmt::format("{} ({})", text(s.final_error_median_m), text(s.final_error_p90_m)),
                          s.wrong_at_end, fmt::format("{} ({})", s.claimed_runs, text(s.claim_updates_median, 0)),

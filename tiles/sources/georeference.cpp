@@ -5,7 +5,6 @@
 #include <gdal_alg.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -13,6 +12,7 @@
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/coordinate_limits.hpp"
+#include "tiles/sources/geotransform.hpp"
 
 namespace roadfix {
 namespace {
@@ -27,22 +27,20 @@ std::string wkt(const OGRSpatialReference& reference) {
 }
 
 void require_pixels_with_area(const RasterFile& file) {
-  std::array<double, 6> to_reference{};
-  std::array<double, 6> to_pixels{};
-  if (file.dataset().GetGeoTransform(to_reference.data()) != CE_None ||
-      GDALInvGeoTransform(to_reference.data(), to_pixels.data()) != FALSE) {
-    return;
-  }
+  auto to_reference = geotransform_of(file.dataset());
+  Geotransform to_pixels{};
+  if (!to_reference || GDALInvGeoTransform(to_reference->data(), to_pixels.data()) != FALSE) return;
   throw InvalidInput("image-without-georeference",
                      fmt::format("{}: its geotransform ({}) gives its pixels no area, so that nothing says where they "
                                  "lie; gdal_translate -a_ullr WEST NORTH EAST SOUTH makes a copy with the right one",
-                                 file.path(), fmt::join(to_reference, ", ")));
+                                 file.path(), fmt::join(*to_reference, ", ")));
 }
 
 /// No camera's pixels are as fine in metres as pixels of degrees look there.
 void require_no_degrees_as_metres(const RasterFile& file) {
-  std::array<double, 6> t{};
-  if (file.dataset().GetGeoTransform(t.data()) != CE_None) return;
+  const auto transform = geotransform_of(file.dataset());
+  if (!transform) return;
+  const Geotransform& t = *transform;
   const double side_m = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4])) * file.crs().GetLinearUnits();
   if (side_m >= kFinestGsdM) return;
   OGREnvelope box;

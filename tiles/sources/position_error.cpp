@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/geotransform.hpp"
 
 namespace roadfix {
 namespace {
@@ -85,8 +86,7 @@ PositionError error_of_control_points(const RasterFile& file, UtmZone zone) {
 }
 
 PositionError error_of_placing(const RasterFile& file, UtmZone zone) {
-  std::array<double, 6> transform{};
-  const bool has_transform = file.dataset().GetGeoTransform(transform.data()) == CE_None;
+  const bool has_transform = geotransform_of(file.dataset()).has_value();
   const bool has_points = !has_transform && file.dataset().GetGCPCount() > 0;
   PositionError placing = has_points ? error_of_control_points(file, zone) : PositionError{};
   if (file.dataset().GetMetadata("RPC") == nullptr || placing.sigma_m >= kRpcSigmaM) return placing;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/geotransform.hpp"
 #include "tiles/sources/nodata.hpp"
 #include "tiles/sources/road_values.hpp"
 #include "tiles/sources/vrt_parts.hpp"
@@ -23,15 +24,8 @@ DatasetPtr open_raster(const std::string& path, std::optional<int> overview) {
   return open_dataset(path, GDAL_OF_RASTER, options.List());
 }
 
-/// That of an image that was only given a reference system: its coordinates are columns and rows.
-bool counts_pixels(const std::array<double, 6>& transform) {
-  return transform == std::array{0.0, 1.0, 0.0, 0.0, 0.0, 1.0} ||
-         transform == std::array{0.0, 1.0, 0.0, 0.0, 0.0, -1.0};
-}
-
-bool has_transform(GDALDataset& dataset) {
-  std::array<double, 6> transform{};
-  if (dataset.GetGeoTransform(transform.data()) == CE_None && !counts_pixels(transform)) return true;
+bool is_placed(GDALDataset& dataset) {
+  if (geotransform_of(dataset)) return true;
   return dataset.GetGCPCount() >= 3 || dataset.GetMetadata("RPC") != nullptr;
 }
 
@@ -130,7 +124,7 @@ void RasterFile::find_bands() {
 }
 
 void RasterFile::find_reference(const RasterOptions& options) {
-  if (!has_transform(*dataset_)) {
+  if (!is_placed(*dataset_)) {
     throw InvalidInput(
         "image-without-georeference",
         fmt::format(

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <string>
 
@@ -12,6 +11,8 @@
 #include "cli/threads_option.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/provenance.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -29,11 +30,9 @@ RoadRules rules_of(const IngestArguments& arguments) {
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
-  static const std::map<std::string, SourceMeaning> kMeanings{
-      {"auto", SourceMeaning::kAuto}, {"imagery", SourceMeaning::kImagery}, {"roads", SourceMeaning::kRoads}};
   command
       .add_option_function<std::string>(
-          "--as", [&a](const std::string& word) { a.meaning = kMeanings.at(word); },
+          "--as", [&a](const std::string& word) { a.content = value_of(kSourceContents, word); },
           "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
       ->check(CLI::IsMember({"auto", "imagery", "roads"}))
       ->default_str("auto");
@@ -79,7 +78,7 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
 
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source) {
   SourceRequest request;
-  request.files = find_source(source, arguments.meaning, arguments.vectors.layer);
+  request.files = find_source(source, arguments.content, arguments.vectors.layer);
   if (!arguments.name.empty()) request.files.name = arguments.name;
   request.raster.crs = arguments.crs;
   if (!arguments.collar.empty()) request.raster.collar = parse_colour(arguments.collar);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
+#include "core/units/provenance.hpp"
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
@@ -19,7 +20,7 @@ struct IngestArguments {
   std::vector<std::string> sources;
   std::string map;
   std::string name;
-  SourceMeaning meaning = SourceMeaning::kAuto;
+  std::optional<SourceContent> content;  ///< nullopt = as find_source() finds out
   std::optional<double> cell_m;
   std::string zone;
   std::string crs;

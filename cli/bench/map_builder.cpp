@@ -41,12 +41,11 @@ std::filesystem::path invented_roads(const ManifestSource& source, const std::fi
 SourceRequest request_of(const ManifestSource& source, const std::filesystem::path& cache) {
   SourceRequest request;
   if (source.as == ManifestSource::As::kInvented) {
-    request.files = find_source(invented_roads(source, cache).string(), SourceMeaning::kRoads);
+    request.files = find_source(invented_roads(source, cache).string(), SourceContent::kRoads);
     return request;
   }
-  const SourceMeaning meaning =
-      source.as == ManifestSource::As::kImagery ? SourceMeaning::kImagery : SourceMeaning::kRoads;
-  request.files = find_source(source.path.string(), meaning);
+  const bool is_imagery = source.as == ManifestSource::As::kImagery;
+  request.files = find_source(source.path.string(), is_imagery ? SourceContent::kImagery : SourceContent::kRoads);
   return request;
 }
 

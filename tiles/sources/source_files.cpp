@@ -151,7 +151,8 @@ bool are_exported(const std::vector<std::string>& images, const std::string& loc
 }
 
 /// One source of all images, or where there are none of all vector files.
-SourceFiles source_of_all(const std::vector<std::string>& files, const std::string& location, SourceMeaning meaning) {
+SourceFiles source_of_all(const std::vector<std::string>& files, const std::string& location,
+                          std::optional<SourceContent> content) {
   SourceFiles result;
   std::vector<std::string> images;
   std::vector<std::string> vectors;
@@ -173,8 +174,7 @@ SourceFiles source_of_all(const std::vector<std::string>& files, const std::stri
         fmt::format("{}: holds neither images nor vector files{}", location,
                     others.empty() ? "" : fmt::format("; to ingest {}, name it itself", others.front())));
   }
-  const bool roads =
-      meaning == SourceMeaning::kRoads || (meaning == SourceMeaning::kAuto && are_exported(images, location));
+  const bool roads = content == SourceContent::kRoads || (!content && are_exported(images, location));
   result.kind = roads ? SourceKind::kRoadRaster : SourceKind::kImagery;
   result.paths = std::move(images);
   if (result.paths.empty()) {
@@ -198,15 +198,15 @@ std::string name_of_file(const fs::path& path) {
 
 }  // namespace
 
-SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer) {
+SourceFiles find_source(const std::string& argument, std::optional<SourceContent> content, const std::string& layer) {
   require_gdal();
   const fs::path path = fs::path(argument).has_filename() ? fs::path(argument) : fs::path(argument).parent_path();
   SourceFiles result;
   if (fs::is_directory(path) && !is_geodatabase(path)) {
-    result = source_of_all(files_in_folder(path), path.string(), meaning);
+    result = source_of_all(files_in_folder(path), path.string(), content);
     result.name = name_of_folder(path);
   } else if (ending_of(path) == ".zip" && fs::exists(path)) {
-    result = source_of_all(files_in_zip(argument), argument, meaning);
+    result = source_of_all(files_in_zip(argument), argument, content);
     result.name = name_of_file(path);
   } else {
     result.paths = {argument};
@@ -217,12 +217,12 @@ SourceFiles find_source(const std::string& argument, SourceMeaning meaning, cons
       if (!seems_to_hold_vectors(argument)) open_dataset(argument, GDAL_OF_VECTOR);  // says why not
     } else {
       result.left_out = layers_of(argument);
-      if (meaning == SourceMeaning::kRoads) result.kind = SourceKind::kRoadRaster;
-      if (meaning == SourceMeaning::kImagery) result.kind = SourceKind::kImagery;
+      if (content == SourceContent::kRoads) result.kind = SourceKind::kRoadRaster;
+      if (content == SourceContent::kImagery) result.kind = SourceKind::kImagery;
     }
     result.name = name_of_file(path);
   }
-  if (meaning == SourceMeaning::kImagery && result.kind == SourceKind::kRoadVectors) {
+  if (content == SourceContent::kImagery && result.kind == SourceKind::kRoadVectors) {
     throw InvalidInput("source-not-imagery", fmt::format("{}: holds vectors, not pixels; give it as roads", argument));
   }
   result.location = argument;

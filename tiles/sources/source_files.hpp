@@ -1,16 +1,14 @@
 // What a SOURCE argument of the command line means: which files, and of what kind.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/units/provenance.hpp"
 #include "tiles/sources/cell_source.hpp"
 
 namespace roadfix {
-
-/// What the user says a source is. kAuto: vectors, maps, rasters of roads that roadfix wrote and copies of either are
-/// roads, other rasters imagery.
-enum class SourceMeaning { kAuto, kImagery, kRoads };
 
 struct SourceFiles {
   std::string name;  ///< stem of the file or archive, or name of the folder
@@ -23,8 +21,11 @@ struct SourceFiles {
   std::vector<std::string> left_out = {};
 };
 
+/// `content` is what the user says it is. nullopt: vectors, maps, rasters of roads that roadfix wrote and copies of
+/// either are roads, other rasters imagery.
 /// Where a `layer` is named, a file that holds both pixels and vectors stands for its vectors.
 /// Throws NotFound "file-not-found", InvalidInput ("source-unreadable", "source-empty", "source-not-imagery").
-SourceFiles find_source(const std::string& argument, SourceMeaning meaning, const std::string& layer = {});
+SourceFiles find_source(const std::string& argument, std::optional<SourceContent> content = {},
+                        const std::string& layer = {});
 
 }  // namespace roadfix

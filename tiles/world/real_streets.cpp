@@ -48,7 +48,7 @@ VectorOptions around(const Placement& placement, const cv::Rect2d& wanted) {
 }  // namespace
 
 std::vector<std::string> road_files(const std::string& source) {
-  SourceFiles files = find_source(source, SourceMeaning::kRoads);
+  SourceFiles files = find_source(source, SourceContent::kRoads);
   const bool is_one_file = files.paths == std::vector{source};  // it may hold lines beside pixels
   if (files.kind == SourceKind::kRoadVectors || is_one_file) return std::move(files.paths);
   throw InvalidInput("world-roads-are-pictures",

@@ -13,6 +13,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
+#include "core/units/provenance.hpp"
 #include "tests/support/as_another_user.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -41,9 +42,9 @@ class SourceFilesTest : public ::testing::Test {
 
 TEST_F(SourceFilesTest, RastersAreImageryUnlessCalledRoads) {
   const std::string path = image("city.tif");
-  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kImagery);
-  EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
-  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).name, "city");
+  EXPECT_EQ(find_source(path).kind, SourceKind::kImagery);
+  EXPECT_EQ(find_source(path, SourceContent::kRoads).kind, SourceKind::kRoadRaster);
+  EXPECT_EQ(find_source(path).name, "city");
 }
 
 TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
@@ -56,9 +57,9 @@ TEST_F(SourceFilesTest, AnotherMapIsRoadsUnlessCalledImagery) {
     const DatasetPtr copy(GetGDALDriverManager()->GetDriverByName("GPKG")->CreateCopy(
         path.c_str(), picture.get(), FALSE, const_cast<char**>(options.data()), nullptr, nullptr));
     const bool map = identifier == "road_probability";
-    EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, map ? SourceKind::kRoadRaster : SourceKind::kImagery);
-    EXPECT_EQ(find_source(path, SourceMeaning::kImagery).kind, SourceKind::kImagery);
-    EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
+    EXPECT_EQ(find_source(path).kind, map ? SourceKind::kRoadRaster : SourceKind::kImagery);
+    EXPECT_EQ(find_source(path, SourceContent::kImagery).kind, SourceKind::kImagery);
+    EXPECT_EQ(find_source(path, SourceContent::kRoads).kind, SourceKind::kRoadRaster);
   }
 }
 
@@ -79,7 +80,7 @@ TEST_F(SourceFilesTest, WhatGdalMakesOfAMapIsRoadsAndNoMap) {
     const DatasetPtr joined(GDALDataset::FromHandle(GDALBuildVRT(vrt.c_str(), 1, nullptr, &name, nullptr, nullptr)));
   }
   for (const std::string& path : {copy, vrt}) {
-    const SourceFiles files = find_source(path, SourceMeaning::kAuto);
+    const SourceFiles files = find_source(path);
     EXPECT_EQ(files.kind, SourceKind::kRoadRaster) << path;
     EXPECT_FALSE(files.is_map) << path;
   }
@@ -93,7 +94,7 @@ TEST_F(SourceFilesTest, AMapInAFolderIsLeftOutAndNamed) {
                                                                                       nullptr, nullptr, nullptr));
   }
   std::filesystem::remove(folder / "a.tif");
-  const auto found = [&] { return find_source(folder.path().string(), SourceMeaning::kAuto); };
+  const auto found = [&] { return find_source(folder.path().string()); };
   EXPECT_THAT(testing::message_of(found), ::testing::HasSubstr("to ingest " + map + ", name it itself"));
   const std::string lines = (folder / "lines.geojson").string();
   std::ofstream(lines) << kLine;
@@ -108,20 +109,20 @@ TEST_F(SourceFilesTest, ExportsBesidePicturesAreRefusedUnlessAllAreCalledTheSame
     file->SetMetadataItem("TIFFTAG_IMAGEDESCRIPTION", std::string(kExportedRoads).c_str());
   }
   const std::string all = folder.path().string();
-  EXPECT_EQ(find_source(all, SourceMeaning::kAuto).kind, SourceKind::kRoadRaster);
+  EXPECT_EQ(find_source(all).kind, SourceKind::kRoadRaster);
   const std::string photo = image("photo.tif");
-  EXPECT_EQ(code_of([&] { find_source(all, SourceMeaning::kAuto); }), "imagery-mixed");
-  EXPECT_THAT(testing::message_of([&] { find_source(all, SourceMeaning::kAuto); }),
+  EXPECT_EQ(code_of([&] { find_source(all); }), "imagery-mixed");
+  EXPECT_THAT(testing::message_of([&] { find_source(all); }),
               ::testing::HasSubstr(exported + " holds roads that roadfix wrote, " + photo + " does not"));
-  EXPECT_EQ(find_source(all, SourceMeaning::kImagery).kind, SourceKind::kImagery);
-  EXPECT_EQ(find_source(all, SourceMeaning::kRoads).kind, SourceKind::kRoadRaster);
+  EXPECT_EQ(find_source(all, SourceContent::kImagery).kind, SourceKind::kImagery);
+  EXPECT_EQ(find_source(all, SourceContent::kRoads).kind, SourceKind::kRoadRaster);
 }
 
 TEST_F(SourceFilesTest, VectorsAreRoadsAndNeverImagery) {
   const std::string path = (folder / "lines.geojson").string();
   std::ofstream(path) << kLine;
-  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kRoadVectors);
-  EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
+  EXPECT_EQ(find_source(path).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(code_of([&] { find_source(path, SourceContent::kImagery); }), "source-not-imagery");
 }
 
 TEST_F(SourceFilesTest, AVrtOfLayersIsVectorsAndLeftOutOfAFolder) {
@@ -129,20 +130,20 @@ TEST_F(SourceFilesTest, AVrtOfLayersIsVectorsAndLeftOutOfAFolder) {
   const std::string path = (folder / "roads.vrt").string();
   std::ofstream(path) << R"(<OGRVRTDataSource><OGRVRTLayer name="lines"><SrcDataSource relativeToVRT="1">)"
                       << "lines.geojson</SrcDataSource></OGRVRTLayer></OGRVRTDataSource>";
-  EXPECT_EQ(find_source(path, SourceMeaning::kAuto).kind, SourceKind::kRoadVectors);
-  EXPECT_EQ(find_source(path, SourceMeaning::kRoads).kind, SourceKind::kRoadVectors);
-  EXPECT_EQ(code_of([&] { find_source(path, SourceMeaning::kImagery); }), "source-not-imagery");
-  const SourceFiles all = find_source(folder.path().string(), SourceMeaning::kAuto);
+  EXPECT_EQ(find_source(path).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(find_source(path, SourceContent::kRoads).kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(code_of([&] { find_source(path, SourceContent::kImagery); }), "source-not-imagery");
+  const SourceFiles all = find_source(folder.path().string());
   EXPECT_THAT(all.paths, ElementsAre((folder / "lines.geojson").string()));
   EXPECT_THAT(all.left_out, ElementsAre(path));
   std::ofstream(folder / "broken.vrt") << "<VRTDataset";
-  EXPECT_EQ(code_of([&] { find_source((folder / "broken.vrt").string(), SourceMeaning::kAuto); }), "source-unreadable");
+  EXPECT_EQ(code_of([&] { find_source((folder / "broken.vrt").string()); }), "source-unreadable");
 }
 
 TEST_F(SourceFilesTest, FilesThatOnlyNeedAnotherFormatSayWhich) {
   const auto advice = [&](const char* name, const char* text) {
     std::ofstream(folder / name) << text;
-    return testing::message_of([&] { find_source((folder / name).string(), SourceMeaning::kAuto); });
+    return testing::message_of([&] { find_source((folder / name).string()); });
   };
   EXPECT_THAT(advice("a.osm.gz", "\x1f\x8b"), ::testing::HasSubstr("unpack it first"));
   EXPECT_THAT(advice("a.osm.BZ2", "BZh9"), ::testing::HasSubstr("unpack it first"));
@@ -155,7 +156,7 @@ TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {
   const std::string b = image("b.tif");
   const std::string a = image("a.tif");
   std::ofstream(folder / "a.tif.aux.xml") << "<PAMDataset/>";
-  const SourceFiles files = find_source(folder.path().string() + "/", SourceMeaning::kRoads);
+  const SourceFiles files = find_source(folder.path().string() + "/", SourceContent::kRoads);
   EXPECT_THAT(files.paths, ElementsAre(a, b));
   EXPECT_EQ(files.name, folder.path().filename());
   EXPECT_EQ(files.kind, SourceKind::kRoadRaster);
@@ -176,18 +177,18 @@ TEST_F(SourceFilesTest, AFileGeodatabaseIsAFileThoughItIsAFolder) {
   }
   std::filesystem::remove(folder / "lines.geojson");
   for (const std::string& way : {geodatabase, geodatabase + "/"}) {
-    const SourceFiles files = find_source(way, SourceMeaning::kAuto);
+    const SourceFiles files = find_source(way);
     EXPECT_EQ(files.name, "Roads") << way;
     EXPECT_EQ(files.kind, SourceKind::kRoadVectors) << way;
   }
-  EXPECT_THAT(find_source(folder.path().string(), SourceMeaning::kAuto).paths, ElementsAre(geodatabase));
+  EXPECT_THAT(find_source(folder.path().string()).paths, ElementsAre(geodatabase));
 }
 
 TEST_F(SourceFilesTest, AFolderHasItsNameHoweverItIsReached) {
   image("a.tif");
   std::filesystem::create_directory(folder / "below");
   for (const char* way : {"", "/", "/.", "/./", "/below/..", "/below/../"}) {
-    EXPECT_EQ(find_source(folder.path().string() + way, SourceMeaning::kAuto).name, folder.path().filename()) << way;
+    EXPECT_EQ(find_source(folder.path().string() + way).name, folder.path().filename()) << way;
   }
 }
 
@@ -195,7 +196,7 @@ TEST_F(SourceFilesTest, VectorsBesideTheImagesOfAFolderAreLeftOutAndNamed) {
   const std::string a = image("a.tif");
   const std::string lines = (folder / "lines.geojson").string();
   std::ofstream(lines) << kLine;
-  const SourceFiles files = find_source(folder.path().string(), SourceMeaning::kAuto);
+  const SourceFiles files = find_source(folder.path().string());
   EXPECT_THAT(files.paths, ElementsAre(a));
   EXPECT_THAT(files.left_out, ElementsAre(lines));
 }
@@ -206,10 +207,10 @@ TEST_F(SourceFilesTest, FormatsThatAreNotLookedForInFoldersAreNamed) {
   std::ofstream(folder / "notes.txt") << "hello";
   std::ofstream{notes} << "<kml/>";
   std::ofstream{grid} << "ncols 1";
-  EXPECT_THAT(testing::message_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }),
+  EXPECT_THAT(testing::message_of([&] { find_source(folder.path().string()); }),
               ::testing::HasSubstr("name it itself"));
   image("a.tif");
-  EXPECT_THAT(find_source(folder.path().string(), SourceMeaning::kAuto).left_out, ElementsAre(notes, grid));
+  EXPECT_THAT(find_source(folder.path().string()).left_out, ElementsAre(notes, grid));
 }
 
 TEST_F(SourceFilesTest, OtherJsonBesideTheRoadsOfAFolderIsLeftOutAndNamed) {
@@ -217,7 +218,7 @@ TEST_F(SourceFilesTest, OtherJsonBesideTheRoadsOfAFolderIsLeftOutAndNamed) {
   const std::string about = (folder / "metadata.json").string();
   std::ofstream{roads} << kLine;
   std::ofstream{about} << R"({"date":"2023","licence":"ODbL"})";
-  const SourceFiles files = find_source(folder.path().string(), SourceMeaning::kAuto);
+  const SourceFiles files = find_source(folder.path().string());
   EXPECT_THAT(files.paths, ElementsAre(roads));
   EXPECT_THAT(files.left_out, ElementsAre(about));
 }
@@ -233,11 +234,11 @@ TEST_F(SourceFilesTest, AFileOfPixelsAndLinesIsPixelsUnlessALayerIsNamed) {
     const DatasetPtr from = open_dataset(lines, GDAL_OF_VECTOR);
     ASSERT_NE(made->CopyLayer(from->GetLayer(0), "roads"), nullptr);
   }
-  const SourceFiles pixels = find_source(path, SourceMeaning::kAuto);
+  const SourceFiles pixels = find_source(path);
   EXPECT_EQ(pixels.kind, SourceKind::kImagery);
   EXPECT_THAT(pixels.left_out, ElementsAre("layer 'roads' of " + path));
-  EXPECT_EQ(find_source(path, SourceMeaning::kRoads, "roads").kind, SourceKind::kRoadVectors);
-  EXPECT_EQ(find_source(image("b.tif"), SourceMeaning::kRoads, "roads").kind, SourceKind::kRoadRaster);
+  EXPECT_EQ(find_source(path, SourceContent::kRoads, "roads").kind, SourceKind::kRoadVectors);
+  EXPECT_EQ(find_source(image("b.tif"), SourceContent::kRoads, "roads").kind, SourceKind::kRoadRaster);
 }
 
 TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
@@ -249,25 +250,24 @@ TEST_F(SourceFilesTest, AZipArchiveIsOneSourceOfWhatItHolds) {
     VSIFWriteL(kLine, 1, std::string_view(kLine).size(), file);
     VSIFCloseL(file);
   }
-  const SourceFiles files = find_source(archive, SourceMeaning::kAuto);
+  const SourceFiles files = find_source(archive);
   EXPECT_THAT(files.paths, ElementsAre("/vsizip/" + archive + "/town/lines.geojson"));
   EXPECT_EQ(files.kind, SourceKind::kRoadVectors);
   EXPECT_EQ(files.name, "city");
   EXPECT_EQ(code_of([&] { open_dataset(files.paths.front(), GDAL_OF_VECTOR); }), "no error");
   std::ofstream(folder / "cut-off.zip") << "PK";
-  EXPECT_EQ(code_of([&] { find_source((folder / "cut-off.zip").string(), SourceMeaning::kAuto); }),
-            "source-unreadable");
+  EXPECT_EQ(code_of([&] { find_source((folder / "cut-off.zip").string()); }), "source-unreadable");
 }
 
 TEST_F(SourceFilesTest, WhatIsNoSourceIsRefusedByName) {
-  EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string(), SourceMeaning::kAuto); }), "file-not-found");
-  EXPECT_THAT(testing::message_of([&] { find_source("roads.gpkg|layername=streets", SourceMeaning::kAuto); }),
+  EXPECT_EQ(code_of([&] { find_source((folder / "none.tif").string()); }), "file-not-found");
+  EXPECT_THAT(testing::message_of([&] { find_source("roads.gpkg|layername=streets"); }),
               ::testing::HasSubstr("name the layer with --layer"));
-  EXPECT_EQ(code_of([&] { find_source(folder.path().string(), SourceMeaning::kAuto); }), "source-empty");
+  EXPECT_EQ(code_of([&] { find_source(folder.path().string()); }), "source-empty");
   std::ofstream(folder / "letter.txt") << "Dear reader";
-  EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string(), SourceMeaning::kAuto); }), "source-unreadable");
+  EXPECT_EQ(code_of([&] { find_source((folder / "letter.txt").string()); }), "source-unreadable");
   std::ofstream(folder / "empty.tif") << "";
-  EXPECT_EQ(code_of([&] { find_source((folder / "empty.tif").string(), SourceMeaning::kAuto); }), "source-unreadable");
+  EXPECT_EQ(code_of([&] { find_source((folder / "empty.tif").string()); }), "source-unreadable");
 }
 
 TEST_F(SourceFilesTest, WhatMayNotBeReadIsNotCalledMissing) {

@@ -19,6 +19,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/picture_files.hpp"
+#include "cli/word_option.hpp"
 #include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
@@ -268,13 +269,9 @@ void add_detect_command(CLI::App& app) {
       ->capture_default_str()
       ->check(seed());
   command->add_flag("--json", options->json, "Answer as JSON");
-  constexpr auto kWords = words_in(kSourceContents);
-  command
-      ->add_option_function<std::string>(
-          "--compare-with", [options](const std::string& word) { options->compared = value_of(kSourceContents, word); },
-          "What the map shows that the feature map is for: imagery (default) or roads, that is road data. Each has its "
-          "network")
-      ->check(CLI::IsMember(std::vector<std::string>(kWords.begin(), kWords.end())));
+  add_word_option(*command, "--compare-with", kSourceContents, options->compared,
+                  "What the map shows that the feature map is for: imagery (default) or roads, that is road data. Each "
+                  "has its network");
   add_detector_options(*command, options->detector);
   command->callback([options] { run_detect(*options); });
 }

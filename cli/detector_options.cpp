@@ -2,12 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <map>
 #include <string>
 #include <vector>
 
 #include "cli/number_checks.hpp"
 #include "cli/unit_options.hpp"
+#include "cli/word_option.hpp"
 #include "core/detect/neural_detector.hpp"
 
 namespace roadfix::cli {
@@ -25,10 +25,8 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return command.add_option(name, value, what)->group(kGroup);
   };
-  using Map = TreeDetectorOptions::Map;
-  command.add_option("--tree-map", o.map, "probabilistic (default) or binary: the paper's, by --tree-min-nodes")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Map>{{"probabilistic", Map::kProbabilistic}, {"binary", Map::kBinary}}))
+  add_word_option(command, "--tree-map", kTreeMaps, o.map,
+                  "probabilistic (default) or binary: the paper's, by --tree-min-nodes")
       ->group(kGroup);
   add("--tree-gsd", o.gsd_m, "Metres per pixel of the brightness; default: 0.5")->check(positive(kMaxGsdM));
   add("--tree-roots", o.trees_per_km2, "Trees per km2; default: 3000")->check(positive(kMaxTrees));

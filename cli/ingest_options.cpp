@@ -3,16 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/word_option.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/provenance.hpp"
-#include "core/units/words.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -30,11 +31,10 @@ RoadRules rules_of(const IngestArguments& arguments) {
 }
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
-  command
-      .add_option_function<std::string>(
-          "--as", [&a](const std::string& word) { a.content = value_of(kSourceContents, word); },
-          "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
-      ->check(CLI::IsMember({"auto", "imagery", "roads"}))
+  constexpr std::array<Word<std::optional<SourceContent>>, 3> kContents{
+      {{"auto", std::nullopt}, {"imagery", SourceContent::kImagery}, {"roads", SourceContent::kRoads}}};
+  add_word_option(command, "--as", kContents, a.content,
+                  "What the sources are; auto: vectors and what roadfix wrote are roads, other rasters imagery")
       ->default_str("auto");
   command.add_option("--name", a.name, "Name of the source in the map; default: stem of the file, name of the folder");
   command.add_option("--crs", a.crs, "Reference system of the sources, if the files have none or a wrong one");

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -10,6 +10,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
+#include "cli/word_option.hpp"
 #include "tiles/world/real_streets.hpp"
 #include "tiles/world/world.hpp"
 
@@ -63,14 +64,10 @@ void add_world_command(CLI::App& app) {
   command->add_option("--seed", settings.seed, "The same seed gives the same world")
       ->capture_default_str()
       ->check(seed());
-  command
-      ->add_option("--land", settings.land,
-                   "A town with streets and houses; or open country: woods, fields, unpaved tracks, few paved roads, "
-                   "and things that look like roads (rails, streams, field margins, fire breaks)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, world::Land>{{"town", world::Land::kTown},
-                                                                             {"country", world::Land::kCountry}})
-                      .description(""))
-      ->type_name("town|country")
+  constexpr std::array<Word<world::Land>, 2> kLands{{{"town", world::Land::kTown}, {"country", world::Land::kCountry}}};
+  add_word_option(*command, "--land", kLands, settings.land,
+                  "A town with streets and houses; or open country: woods, fields, unpaved tracks, few paved roads, "
+                  "and things that look like roads (rails, streams, field margins, fire breaks)")
       ->default_str("town");
   command->add_option("--size-km", options->size_km, "Width and height in km, for example 2x2")
       ->delimiter('x')

@@ -113,9 +113,7 @@ double TreeRoadDetector::halo_m() const {
   return reach_px * options_.gsd_m;
 }
 
-std::string TreeRoadDetector::name() const {
-  return options_.map == TreeDetectorOptions::Map::kBinary ? "tree map=binary" : "tree map=probabilistic";
-}
+std::string TreeRoadDetector::name() const { return fmt::format("tree map={}", word_of(kTreeMaps, options_.map)); }
 
 std::string TreeRoadDetector::settings() const {
   const TreeParameters& t = options_.tree;

@@ -1,8 +1,11 @@
 // Feature maps from growing trees: the paper's binary map and a probabilistic one.
 #pragma once
 
+#include <array>
+
 #include "core/detect/growing_tree.hpp"
 #include "core/detect/road_detector.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix {
 
@@ -19,6 +22,10 @@ struct TreeDetectorOptions {
 
   friend bool operator==(const TreeDetectorOptions&, const TreeDetectorOptions&) = default;
 };
+
+/// As options and the detector's settings name them.
+inline constexpr std::array<Word<TreeDetectorOptions::Map>, 2> kTreeMaps{
+    {{"probabilistic", TreeDetectorOptions::Map::kProbabilistic}, {"binary", TreeDetectorOptions::Map::kBinary}}};
 
 /// Throws InvalidInput ("tree-parameter").
 class TreeRoadDetector : public RoadDetector {

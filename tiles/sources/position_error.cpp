@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -124,7 +125,7 @@ bool has_way(const OGRSpatialReference& from, const OGRSpatialReference& to, Lat
 PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, LatLon place, const std::string& path) {
   constexpr double kNothingM = 2.0;
   constexpr std::array<double, 9> kStatedM{3.0, 5.0, 7.0, 10.0, 15.0, 20.0, 25.0, 35.0, 50.0};
-  if (!on_old_ellipsoid(reference)) return {};
+  assert(on_old_ellipsoid(reference));
   const OGRSpatialReference plane = utm_reference(zone);
   if (has_way(reference, plane, place, kNothingM)) return {};
   if (!has_way(reference, plane, place)) {

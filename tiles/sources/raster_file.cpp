@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/geotransform.hpp"
 #include "tiles/sources/nodata.hpp"
+#include "tiles/sources/raster_reference.hpp"
+#include "tiles/sources/raster_windows.hpp"
 #include "tiles/sources/road_values.hpp"
 #include "tiles/sources/vrt_parts.hpp"
 
@@ -22,30 +23,6 @@ DatasetPtr open_raster(const std::string& path, std::optional<int> overview) {
   CPLStringList options;
   if (overview) options.SetNameValue("OVERVIEW_LEVEL", fmt::format("{}", *overview).c_str());
   return open_dataset(path, GDAL_OF_RASTER, options.List());
-}
-
-bool is_placed(GDALDataset& dataset) {
-  if (geotransform_of(dataset)) return true;
-  return dataset.GetGCPCount() >= 3 || dataset.GetMetadata("RPC") != nullptr;
-}
-
-/// Of the .prj file that comes with a world file, which GDAL reads beside few formats.
-std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
-  const GdalMessages messages;
-  for (const char* extension : {"prj", "PRJ"}) {
-    const std::string file = CPLResetExtension(path.c_str(), extension);
-    VSIStatBufL stat;
-    if (VSIStatL(file.c_str(), &stat) != 0) continue;
-    CPLStringList lines(CSLLoad(file.c_str()));
-    OGRSpatialReference crs;
-    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (crs.importFromESRI(lines.List()) == OGRERR_NONE) return crs;
-    throw InvalidInput("image-without-georeference",
-                       fmt::format("{}: holds no reference system in the WKT of ESRI ({}), which a .prj file does; "
-                                   "name it with --crs of ingest, for example --crs EPSG:32637",
-                                   file, messages.text()));
-  }
-  return std::nullopt;
 }
 
 /// GDAL before 3.7 knows them by a remark beside the type only, and reads -1 as 255.
@@ -87,7 +64,7 @@ RasterFile::RasterFile(std::string path, const RasterOptions& options, std::opti
                                    path_));
   }
   find_bands();
-  find_reference(options);
+  crs_ = reference_of(*dataset_, path_, options.crs);
 }
 
 void RasterFile::find_bands() {
@@ -121,36 +98,6 @@ void RasterFile::find_bands() {
   has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
   filled_ = filled_parts(*dataset_, colour_bands_.front());
   for (const int band : colour_bands_) nodata_.push_back(nodata_of(*dataset_->GetRasterBand(band)));
-}
-
-void RasterFile::find_reference(const RasterOptions& options) {
-  if (!is_placed(*dataset_)) {
-    throw InvalidInput(
-        "image-without-georeference",
-        fmt::format(
-            "{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
-            "(.jgw, .pgw, .tfw), and a .prj file that names its reference system (ingest also takes --crs EPSG:...)",
-            path_));
-  }
-  if (!options.crs.empty()) {
-    crs_ = parse_crs(options.crs);
-    return;
-  }
-  const OGRSpatialReference* own = dataset_->GetSpatialRef();
-  if (own == nullptr) own = dataset_->GetGCPSpatialRef();
-  if (own != nullptr) {
-    crs_ = *own;
-    crs_.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  } else if (dataset_->GetMetadata("RPC") != nullptr) {
-    crs_ = wgs84_reference();
-  } else if (const auto beside = crs_beside(path_)) {
-    crs_ = *beside;
-  } else {
-    throw InvalidInput("image-without-georeference",
-                       fmt::format("{}: has coordinates but no reference system; name it in a .prj file beside it, or "
-                                   "with --crs of ingest, for example --crs EPSG:32637",
-                                   path_));
-  }
 }
 
 std::optional<ValueRange> RasterFile::declared_range() const {
@@ -281,19 +228,7 @@ cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   return valid;
 }
 
-std::vector<cv::Rect> RasterFile::sample_windows() const {
-  constexpr int kWindows = 16;
-  constexpr int kWindowPx = 64;
-  const auto window_px = [=](int length) { return std::min(kWindowPx, (length + kWindows - 1) / kWindows); };
-  const cv::Size window(window_px(size().width), window_px(size().height));
-  std::vector<cv::Rect> windows;
-  for (int i = 0; i < kWindows * kWindows; ++i) {
-    const auto x = static_cast<int>(std::int64_t{size().width - window.width} * (i % kWindows) / (kWindows - 1));
-    const auto y = static_cast<int>(std::int64_t{size().height - window.height} * (i / kWindows) / (kWindows - 1));
-    windows.emplace_back(cv::Point(x, y), window);
-  }
-  return windows;
-}
+std::vector<cv::Rect> RasterFile::sample_windows() const { return spread_windows(size()); }
 
 std::vector<float> RasterFile::sample_values() {
   std::vector<float> values;
@@ -311,26 +246,9 @@ std::vector<float> RasterFile::sample_values() {
   return values;
 }
 
-/// All of the image, in whole blocks of the file of a megapixel or so together.
-std::vector<cv::Rect> RasterFile::all_windows() const {
-  constexpr int kSidePx = 1024;
-  int block_width = 1;
-  int block_height = 1;
-  dataset_->GetRasterBand(colour_bands_.front())->GetBlockSize(&block_width, &block_height);
-  const int width = block_width * std::max(1, kSidePx / block_width);
-  const auto blocks = std::int64_t{kSidePx} * kSidePx / (std::int64_t{width} * block_height);
-  const int height = block_height * static_cast<int>(std::max(std::int64_t{1}, blocks));
-  const cv::Rect whole({0, 0}, size());
-  std::vector<cv::Rect> windows;
-  for (int row = 0; row < whole.height; row += height) {
-    for (int col = 0; col < whole.width; col += width) windows.push_back(cv::Rect(col, row, width, height) & whole);
-  }
-  return windows;
-}
-
 float RasterFile::largest_value(float enough) {
   float largest = 0.0F;
-  for (const cv::Rect& window : all_windows()) {
+  for (const cv::Rect& window : windows_of_blocks(*dataset_->GetRasterBand(colour_bands_.front()))) {
     const cv::Mat raw = read_stored(window);
     largest = std::max(largest, static_cast<float>(extremes(raw, read_validity(window, raw)).high));
     if (largest > enough) break;

@@ -89,8 +89,6 @@ class RasterFile {
 
  private:
   void find_bands();
-  void find_reference(const RasterOptions& options);
-  std::vector<cv::Rect> all_windows() const;
   cv::Mat read_alpha(cv::Rect window);
   double sample_full_opacity();
   cv::Mat read_stored(cv::Rect window);

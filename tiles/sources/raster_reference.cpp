@@ -1,0 +1,72 @@
+#include "tiles/sources/raster_reference.hpp"
+
+#include <cpl_conv.h>
+#include <cpl_string.h>
+#include <cpl_vsi.h>
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "core/units/error.hpp"
+#include "tiles/sources/geotransform.hpp"
+
+namespace roadfix {
+namespace {
+
+bool is_placed(GDALDataset& raster) {
+  if (geotransform_of(raster)) return true;
+  return raster.GetGCPCount() >= 3 || raster.GetMetadata("RPC") != nullptr;
+}
+
+/// Of the .prj file that comes with a world file, which GDAL reads beside few formats.
+std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
+  const GdalMessages messages;
+  for (const char* extension : {"prj", "PRJ"}) {
+    const std::string file = CPLResetExtension(path.c_str(), extension);
+    VSIStatBufL stat;
+    if (VSIStatL(file.c_str(), &stat) != 0) continue;
+    CPLStringList lines(CSLLoad(file.c_str()));
+    OGRSpatialReference crs;
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    if (crs.importFromESRI(lines.List()) == OGRERR_NONE) return crs;
+    throw InvalidInput("image-without-georeference",
+                       fmt::format("{}: holds no reference system in the WKT of ESRI ({}), which a .prj file does; "
+                                   "name it with --crs of ingest, for example --crs EPSG:32637",
+                                   file, messages.text()));
+  }
+  return std::nullopt;
+}
+
+std::optional<OGRSpatialReference> crs_within(GDALDataset& raster) {
+  const OGRSpatialReference* own = raster.GetSpatialRef();
+  if (own == nullptr) own = raster.GetGCPSpatialRef();
+  if (own != nullptr) {
+    OGRSpatialReference crs = *own;
+    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    return crs;
+  }
+  if (raster.GetMetadata("RPC") != nullptr) return wgs84_reference();
+  return std::nullopt;
+}
+
+}  // namespace
+
+OGRSpatialReference reference_of(GDALDataset& raster, const std::string& path, const std::string& told) {
+  if (!is_placed(raster)) {
+    throw InvalidInput(
+        "image-without-georeference",
+        fmt::format(
+            "{}: nothing says where on Earth it lies; give a GeoTIFF, or put a world file beside it "
+            "(.jgw, .pgw, .tfw), and a .prj file that names its reference system (ingest also takes --crs EPSG:...)",
+            path));
+  }
+  if (!told.empty()) return parse_crs(told);
+  if (const auto own = crs_within(raster)) return *own;
+  if (const auto beside = crs_beside(path)) return *beside;
+  throw InvalidInput("image-without-georeference",
+                     fmt::format("{}: has coordinates but no reference system; name it in a .prj file beside it, or "
+                                 "with --crs of ingest, for example --crs EPSG:32637",
+                                 path));
+}
+
+}  // namespace roadfix

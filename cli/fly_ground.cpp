@@ -60,7 +60,7 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
     throw InvalidInput("option-without-effect", "a recorded flight has its course: leave out --course and --kidnap");
   }
   fly::RecordingOptions recorded;
-  recorded.border = options.black_unseen ? Border::kBlackUnseen : Border::kSeen;
+  recorded.border = options.border;
   recorded.detector = ground.detector.get();
   recorded.cell_m = map.cell_m;
   recorded.step_s = options.plan.handling.step_s;
@@ -158,7 +158,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
   const bool over_a_map = options.over.empty() || kind == ".gpkg";
   const bool sends_frames = options.send == "frames";
   if (sends_frames) require_sendable_frames(options, !over_a_map);
-  if (options.black_unseen && kind != ".csv") {
+  if (options.border == Border::kBlackUnseen && kind != ".csv") {
     throw InvalidInput("option-without-effect",
                        "--black-unseen is about recorded flights: name one with --over, or leave it out");
   }

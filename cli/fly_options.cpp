@@ -26,8 +26,9 @@ void add_basics(CLI::App& command, FlyOptions& o) {
       "What lies below: georeferenced imagery; another map; or FRAMES.csv, a recorded flight with its "
       "true poses, one for each sequence (columns as of the frames of roadfix bench, and time_s); default: "
       "the map itself, as feature maps with errors");
-  command.add_flag("--black-unseen", o.black_unseen,
-                   "Recorded flights: black areas at the rim of a frame were not seen");
+  command.add_flag_callback(
+      "--black-unseen", [&o] { o.border = Border::kBlackUnseen; },
+      "Recorded flights: black areas at the rim of a frame were not seen");
   command
       .add_option("--filter", o.campaign.filters,
                   std::string("One or more of ") + fly::kFilterNames + ", over the same flights")

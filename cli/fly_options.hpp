@@ -11,13 +11,14 @@
 #include "cli/fly/flight_pictures.hpp"
 #include "cli/fly/sensor.hpp"
 #include "cli/fly/service_plan.hpp"
+#include "core/detect/frame_image.hpp"
 
 namespace roadfix::cli {
 
 struct FlyOptions {
   std::string map;
   std::string over;
-  bool black_unseen = false;
+  Border border = Border::kSeen;  ///< of the frames of a recorded flight
   std::string course = "random";
   double lane_m = 300.0;
   double area_m = 0.0;

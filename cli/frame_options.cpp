@@ -104,12 +104,13 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
           "--fisheye", [&o] { o.camera.lens = LensModel::kFisheye; },
           "The lens is a fisheye (OpenCV's model; ROS: equidistant)")
       ->needs(focal);
-  command.add_flag("--black-unseen", o.black_unseen, "Black areas at the frame's edge were not seen");
+  command.add_flag_callback(
+      "--black-unseen", [&o] { o.border = Border::kBlackUnseen; }, "Black areas at the frame's edge were not seen");
   return {gsd, agl, exif};
 }
 
 void require_frame_for(const FrameOptions& options) {
-  if (options.black_unseen && !options.given())
+  if (options.border == Border::kBlackUnseen && !options.given())
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
   if ((options.camera.roll || options.camera.pitch) && !options.has_camera())
     throw CLI::RequiredError("with --roll and --pitch one of --exif and --agl");
@@ -117,7 +118,7 @@ void require_frame_for(const FrameOptions& options) {
 
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {
   const cv::Mat pixels = decoded(path, [](Bytes bytes) { return decode_frame(bytes, kMaxPixels); });
-  const api::Frame frame{pixels, scale_of(path, options), options.black_unseen ? Border::kBlackUnseen : Border::kSeen};
+  const api::Frame frame{pixels, scale_of(path, options), options.border};
   return said_of(path, [&] { return api::seen_frame(frame, detector, kMaxPixels); });
 }
 

@@ -15,7 +15,7 @@ struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
   bool camera_in_file = false;
   FrameCamera camera;  ///< what is told of it; without a height nothing is
-  bool black_unseen = false;
+  Border border = Border::kSeen;
 
   bool given() const { return gsd_m > 0.0 || has_camera(); }
   bool has_camera() const { return camera_in_file || camera.agl_m > 0.0; }

@@ -26,6 +26,8 @@ constexpr std::array<Word<ManifestSource::As>, 3> kSources{{{"imagery", Manifest
                                                             {"roads", ManifestSource::As::kRoads},
                                                             {"invented", ManifestSource::As::kInvented}}};
 
+constexpr std::array<Word<Border>, 1> kBorders{{{"black", Border::kBlackUnseen}}};
+
 ManifestSource parse_source(const JsonField& field, const std::filesystem::path& directory) {
   const ManifestSource::As as = field.at("as").one_of(kSources);
   if (as != ManifestSource::As::kInvented) {
@@ -160,7 +162,7 @@ QuerySet parse_query_set(const JsonField& field, const Manifest& manifest, const
   }
   if (field.has("exclude")) set.exclude = parse_exclusion(field.at("exclude"));
   if (field.has("noise")) set.noise = parse_noise(field.at("noise"));
-  if (field.has("unobserved")) set.black_is_unobserved = field.at("unobserved").one_of({"black"}) == "black";
+  if (field.has("unobserved")) set.border = field.at("unobserved").one_of(kBorders);
   if (field.has("together")) set.together = static_cast<int>(field.at("together").whole_number(1.0, 64.0));
   if (field.has("prior")) parse_prior(field.at("prior"), set);
   return set;

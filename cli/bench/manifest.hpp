@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/detect/frame_image.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/locate/simulate.hpp"
 #include "core/units/angle.hpp"
@@ -51,10 +52,10 @@ struct QuerySet {
   int count = 0;               ///< ignored for frames: all are used
   Footprint footprint;         ///< ignored for frames
   Exclusion exclude;
-  QualityRange noise;      ///< of simulated queries
-  std::string from;        ///< map that simulated feature maps are cut out of; `map` by default
-  bool elsewhere = false;  ///< the queries show ground that is not on the map: every fix is a false one
-  bool black_is_unobserved = false;
+  QualityRange noise;             ///< of simulated queries
+  std::string from;               ///< map that simulated feature maps are cut out of; `map` by default
+  bool elsewhere = false;         ///< the queries show ground that is not on the map: every fix is a false one
+  Border border = Border::kSeen;  ///< of frames
   int together = 1;  ///< each frame with so many less one of its sequence before it, laid together by their true poses
   std::optional<double> prior_radius_m;      ///< nullopt = the whole map
   std::optional<double> prior_beyond_m;      ///< the truth is so far outside of that circle; nullopt = it is inside

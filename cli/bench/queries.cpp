@@ -171,8 +171,7 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
 }
 
 SharedView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
-  const Border border = set.black_is_unobserved ? Border::kBlackUnseen : Border::kSeen;
-  return std::make_shared<GroundView>(view_of(read_frame(set.path.parent_path(), frame, border), frame, detector));
+  return std::make_shared<GroundView>(view_of(read_frame(set.path.parent_path(), frame, set.border), frame, detector));
 }
 
 /// `queries` are those of the frames so far, in their order.

@@ -27,7 +27,7 @@ TEST(Manifest, ReadsAllThreeKindsOfQueries) {
   EXPECT_EQ(manifest.queries[0].footprint.height_m, 300);
   EXPECT_EQ(manifest.queries[0].exclude.bottom, 0.12);
   EXPECT_EQ(manifest.queries[1].kind, QuerySet::Kind::kFrames);
-  EXPECT_TRUE(manifest.queries[1].black_is_unobserved);
+  EXPECT_EQ(manifest.queries[1].border, Border::kBlackUnseen);
   EXPECT_EQ(manifest.queries[2].kind, QuerySet::Kind::kSimulated);
   EXPECT_EQ(manifest.queries[2].prior_radius_m, 500);
   EXPECT_FALSE(manifest.queries[2].prior_beyond_m);

@@ -28,6 +28,7 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
   if (low > high) return {};
   require_shares(path, values.seen, range, values.integers);
   constexpr double kHalf = 0.5;
+  const bool labels = values.ones_only && low == 1.0;
   std::vector<std::string> notes;
   if (low > kHalf * range.high) {
     notes.push_back(fmt::format(
@@ -41,7 +42,7 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
         "look at its values (gdalinfo -stats), and ingest the right ones with --replace",
         path));
   }
-  if (values.integers && high > 0.0 && high < kHalf * range.high) {
+  if (values.integers && !labels && high > 0.0 && high < kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: its largest value is {:g} of {:g}, so that no road is surer than {:.0f} %. If it stands for certain, "
         "rescale it (gdal_translate -scale 0 {:g} 0 {:g})",
@@ -54,7 +55,13 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
         "make bytes of them (gdal_translate -ot Byte -scale 0 65535 0 255) and use --replace",
         path, high));
   }
-  if (values.ones_only) {
+  if (labels) {
+    notes.push_back(fmt::format(
+        "{0}: its values are 1 and {1:g}, as labels are, and count as {2:.3g} and {3:.3g} % road. If {1:g} is road and "
+        "1 is not, rescale them (gdal_translate -scale 1 {1:g} 0 {4:g}); if 1 is road and {1:g} means nothing, mark "
+        "that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
+        path, high, 100.0 / range.high, 100.0 * high / range.high, range.high));
+  } else if (values.ones_only) {
     notes.push_back(fmt::format(
         "{0}: its values are 0 and 1, but for some of {1:g}, so that 1 counts as {2:.2g} % road. If 1 is "
         "road and {1:g} means nothing, mark that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",

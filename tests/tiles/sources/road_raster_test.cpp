@@ -117,6 +117,10 @@ TEST_F(RoadRaster, ValuesThatHardlySayAnythingGetANote) {
   EXPECT_THAT(notes(100.0, 0.0, std::nullopt),
               ::testing::ElementsAre(::testing::HasSubstr("no road is surer than 39 %")));
   EXPECT_THAT(notes(0.0, 0.0, std::nullopt), ::testing::ElementsAre(::testing::HasSubstr("becomes no road")));
+  EXPECT_THAT(notes(2.0, 1.0, std::nullopt),
+              ::testing::ElementsAre(::testing::AllOf(
+                  ::testing::HasSubstr("its values are 1 and 2, as labels are, and count as 0.392 and 0.784 % road"),
+                  ::testing::HasSubstr("gdal_translate -scale 1 2 0 255"))));
 }
 
 /// A raster of `ground` but for a square of `village` and a line of `road` across it, which lie between what is

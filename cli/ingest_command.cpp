@@ -74,8 +74,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
   const IngestReport report = ingest_with_progress(planned, summary, record, *writer, std::move(options));
   if (report.observed_cells == 0 && report.blocks_before == 0) {
     fmt::print(stderr, "note: nothing of {} was observed: {}\n", request.files.location,
-               summary.is_lines() ? "its --extent holds the centre of no cell"
-                                  : "all its pixels are nodata, transparent, no numbers or in one colour");
+               why_nothing_observed(source, settings.cell_m));
   }
   if (report.blocks_before < report.blocks) {
     note_copies(writer->twins_of(record.name), record.name, arguments.map, report.shifts);

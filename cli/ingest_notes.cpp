@@ -34,6 +34,20 @@ void print_shift_note(const std::string& source, const ShiftReport::Shifted& shi
              std::ceil(shift.sigma_m));
 }
 
+/// The longest part of the range that a single cell can hold.
+double longest_in_a_cell(double from_m, double to_m, double cell_m) {
+  const double edge_m = (std::floor(from_m / cell_m) + 1.0) * cell_m;  // the first beyond `from_m`
+  if (to_m >= edge_m + cell_m) return cell_m;
+  return std::max(std::min(to_m, edge_m) - from_m, to_m - edge_m);
+}
+
+/// As a cell of pixels has to be filled to count as observed.
+bool fills_half_a_cell(const GridBox& box, double cell_m) {
+  return 2.0 * longest_in_a_cell(box.min.east_m, box.max.east_m, cell_m) *
+             longest_in_a_cell(box.min.north_m, box.max.north_m, cell_m) >=
+         cell_m * cell_m;
+}
+
 }  // namespace
 
 std::optional<std::string> note_on_distance(const CellSource& source, const std::optional<MapInfo>& map) {
@@ -77,6 +91,17 @@ std::optional<std::string> note_on_ground_lost(const CellSource& newer, const st
       "--replace takes {:.1f} of {:.1f} km2 of the old '{}' out of the map, which this one does not cover. If it shows "
       "a part only, ingest it with another --name instead",
       static_cast<double>(lost) * block_km2, static_cast<double>(blocks.size()) * block_km2, source);
+}
+
+std::string why_nothing_observed(const CellSource& source, double cell_m) {
+  if (source.summary().is_lines()) return "its --extent holds the centre of no cell";
+  if (fills_half_a_cell(source.extent(), cell_m)) {
+    return "all its pixels are nodata, transparent, no numbers or in one colour";
+  }
+  return fmt::format(
+      "it is so small that it fills half of no cell: these are {:g} m, and smaller ones take a map of their own "
+      "(--cell)",
+      cell_m);
 }
 
 void note_copies(const std::vector<std::string>& twins, const std::string& source, const std::string& map,

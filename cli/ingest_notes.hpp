@@ -23,6 +23,9 @@ std::optional<std::string> note_on_nothing_replaced(const std::optional<MapInfo>
 std::optional<std::string> note_on_ground_lost(const CellSource& newer, const std::string& map,
                                                const std::string& source, double cell_m);
 
+/// Why no cell of the source was observed.
+std::string why_nothing_observed(const CellSource& source, double cell_m);
+
 /// On stderr: the source is a copy of others. `twins` have exactly the same cells.
 void note_copies(const std::vector<std::string>& twins, const std::string& source, const std::string& map,
                  const ShiftReport& shifts);

@@ -107,6 +107,20 @@ TEST_F(IngestReport, AnImageThatShowsNothingIsSaidToShowNothing) {
               ::testing::AllOf(HasSubstr("nothing of " + image + " was observed"), HasSubstr("in one colour")));
 }
 
+TEST_F(IngestReport, AnImageThatFillsHalfOfNoCellIsSaidToBeTooSmall) {
+  for (const double west_m : {500000.0, 500001.5}) {  // within a cell, and where four of them meet
+    const std::string image =
+        write_raster(folder / "small.tif",
+                     {.width = 1, .height = 1, .transform = std::array{west_m, 1.0, 0.0, 4180000.5, 0.0, -1.0}},
+                     [](int, int, int) { return 255.0; });
+    const ChildResult result = ingest({image, "--as", "roads", "--cell", "2", "--map", map("small.gpkg")});
+    EXPECT_EQ(result.code, 0) << result.err;
+    EXPECT_THAT(result.err, ::testing::AllOf(HasSubstr("it fills half of no cell: these are 2 m"),
+                                             Not(HasSubstr("all its pixels are"))));
+    std::filesystem::remove(map("small.gpkg"));
+  }
+}
+
 TEST_F(IngestReport, ACopyUnderAnotherNameIsNoticed) {
   const std::string image = picture(600, 0.5);
   const std::string copy = folder / "the copy's.tif";

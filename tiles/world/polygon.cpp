@@ -3,8 +3,20 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace roadfix::world {
+namespace {
+
+/// Where the edge from `a` to `b` meets the line through `point`; nullopt if both ends lie on one side of it.
+std::optional<PlanPoint> crossing(PlanPoint a, PlanPoint b, PlanPoint point, PlanPoint along) {
+  const double side_a = along.cross(a - point);
+  const double side_b = along.cross(b - point);
+  if ((side_a < 0.0) == (side_b < 0.0)) return std::nullopt;
+  return a + (b - a) * (side_a / (side_a - side_b));
+}
+
+}  // namespace
 
 double area_of(const Polyline& polygon) {
   double twice = 0.0;
@@ -46,14 +58,10 @@ Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along) {
   Cut result;
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const PlanPoint a = polygon[i];
-    const PlanPoint b = polygon[(i + 1) % polygon.size()];
-    const double side_a = along.cross(a - point);
-    const double side_b = along.cross(b - point);
-    result.parts[side_a < 0.0 ? 1 : 0].push_back(a);
-    if ((side_a < 0.0) != (side_b < 0.0)) {
-      const PlanPoint crossing = a + (b - a) * (side_a / (side_a - side_b));
-      for (Polyline& part : result.parts) part.push_back(crossing);
-      result.chord.push_back(crossing);
+    result.parts[along.cross(a - point) < 0.0 ? 1 : 0].push_back(a);
+    if (const auto at = crossing(a, polygon[(i + 1) % polygon.size()], point, along)) {
+      for (Polyline& part : result.parts) part.push_back(*at);
+      result.chord.push_back(*at);
     }
   }
   return result;
@@ -62,12 +70,8 @@ Cut cut(const Polyline& polygon, PlanPoint point, PlanPoint along) {
 std::vector<std::pair<PlanPoint, PlanPoint>> stretches(const Polyline& polygon, PlanPoint point, PlanPoint along) {
   std::vector<double> crossings;  // metres along the line
   for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const PlanPoint a = polygon[i];
-    const PlanPoint b = polygon[(i + 1) % polygon.size()];
-    const double side_a = along.cross(a - point);
-    const double side_b = along.cross(b - point);
-    if ((side_a < 0.0) == (side_b < 0.0)) continue;
-    crossings.push_back((a + (b - a) * (side_a / (side_a - side_b)) - point).dot(along));
+    const auto at = crossing(polygon[i], polygon[(i + 1) % polygon.size()], point, along);
+    if (at) crossings.push_back((*at - point).dot(along));
   }
   std::ranges::sort(crossings);
   std::vector<std::pair<PlanPoint, PlanPoint>> result;

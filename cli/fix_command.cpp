@@ -148,6 +148,39 @@ void run_fix(const FixArguments& options) {
   pictures.several || !options.csv.empty() ? fix_all(options, pictures) : fix_one(options, pictures.files.front());
 }
 
+void add_prior_options(CLI::App& command, FixArguments& o) {
+  auto* lat = command.add_option("--lat", o.centre.lat_deg, "Prior: latitude of the centre, degrees");
+  auto* lon = command.add_option("--lon", o.centre.lon_deg, "Prior: longitude of the centre, degrees");
+  auto* radius = command.add_option("--radius,--radius-m", o.radius_m, "Prior: radius in metres");
+  radius->check(positive())->needs(lat)->needs(lon);
+  lat->needs(lon)->needs(radius);
+  lon->needs(lat);
+  add_bbox_option(command, "Prior (together with --radius: what lies in both)", o.bbox);
+  auto* heading = command.add_option("--heading", o.heading_deg, "Prior: true heading in degrees");
+  command
+      .add_option("--heading-range", o.heading_range_deg,
+                  "Prior: the heading lies within this many degrees of --heading")
+      ->check(between(0.0, 180.0))
+      ->needs(heading);
+  heading->needs("--heading-range");
+}
+
+void add_nadir_options(CLI::App& command, FixArguments& o) {
+  command
+      .add_option(
+          "--nadir-sigma", o.input.nadir_sigma_m,
+          "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
+          "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
+          "otherwise 0)")
+      ->check(not_negative(1000.0));
+  command
+      .add_option("--nadir-heading-sigma", o.input.nadir_heading_sigma_deg,
+                  "How far what the input shows may be turned about that point, 1 sigma in degrees (default with "
+                  "--agl: 0.5, and what errors of roll and pitch do to the ground that a leaning camera sees; "
+                  "otherwise 0)")
+      ->check(not_negative(180.0));
+}
+
 }  // namespace
 
 void add_fix_command(CLI::App& app) {
@@ -163,20 +196,7 @@ void add_fix_command(CLI::App& app) {
       ->add_option("input", o->pictures, std::string(kInputMeaning) + "; several of them, and folders of PNG and JPEG")
       ->required();
   add_feature_input_options(*command, o->input);
-  auto* lat = command->add_option("--lat", o->centre.lat_deg, "Prior: latitude of the centre, degrees");
-  auto* lon = command->add_option("--lon", o->centre.lon_deg, "Prior: longitude of the centre, degrees");
-  auto* radius = command->add_option("--radius,--radius-m", o->radius_m, "Prior: radius in metres");
-  radius->check(positive())->needs(lat)->needs(lon);
-  lat->needs(lon)->needs(radius);
-  lon->needs(lat);
-  add_bbox_option(*command, "Prior (together with --radius: what lies in both)", o->bbox);
-  auto* heading = command->add_option("--heading", o->heading_deg, "Prior: true heading in degrees");
-  command
-      ->add_option("--heading-range", o->heading_range_deg,
-                   "Prior: the heading lies within this many degrees of --heading")
-      ->check(between(0.0, 180.0))
-      ->needs(heading);
-  heading->needs("--heading-range");
+  add_prior_options(*command, *o);
   command
       ->add_option("--confidence", o->fix.confidence,
                    "Minimum probability of a fix; the shipped calibration vouches for 0.9965 at most")
@@ -193,19 +213,7 @@ void add_fix_command(CLI::App& app) {
           "from FocalLengthIn35mmFilm alone (0.1)")
       ->capture_default_str()
       ->check(between(0.0, kMaxScaleRange));
-  command
-      ->add_option(
-          "--nadir-sigma", o->input.nadir_sigma_m,
-          "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
-          "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
-          "otherwise 0)")
-      ->check(not_negative(1000.0));
-  command
-      ->add_option("--nadir-heading-sigma", o->input.nadir_heading_sigma_deg,
-                   "How far what the input shows may be turned about that point, 1 sigma in degrees (default with "
-                   "--agl: 0.5, and what errors of roll and pitch do to the ground that a leaning camera sees; "
-                   "otherwise 0)")
-      ->check(not_negative(180.0));
+  add_nadir_options(*command, *o);
   add_threads_option(*command, "--threads", o->fix.search.threads, "Threads of the search");
   add_seconds_option(*command, "--proof", o->fix.search.proof_time,
                      "Search this many seconds for a better place than the best candidate")

@@ -31,14 +31,15 @@ Outcome judged(const std::string& id, const std::optional<GeoPose>& truth, Answe
 struct Summary {
   int n = 0;
   int answered = 0;  ///< status `fix`
+  /// Shares of all queries, 0 to 1, whose best guess is at most so many metres off, whatever the status.
   double recall_5 = 0.0;
   double recall_10 = 0.0;
   double recall_25 = 0.0;
   double recall_50 = 0.0;
-  int false_fixes = 0;
+  int false_fixes = 0;                             ///< of the answered, further off than kFalseFixM
   std::optional<double> median_error_m;            ///< of the answered
   std::optional<double> median_heading_error_deg;  ///< of the answered
-  double time_p50_ms = 0.0;
+  double time_p50_ms = 0.0;                        ///< of all queries that took any
   double time_p95_ms = 0.0;
   std::optional<double> mean_matches;         ///< of keypoints, in a frame
   std::optional<double> mean_right_matches;   ///< of those

@@ -1,4 +1,4 @@
-// A network added_layer ready by oneDNN for pictures of one size.
+// A network made ready by oneDNN for pictures of one size.
 #pragma once
 
 #include <dnnl.hpp>

@@ -26,9 +26,10 @@ struct MercatorPixel {
   double y = 0.0;
 };
 MercatorPixel mercator_pixel(LatLon at, int zoom);
+/// Of any pixel, also beyond the square.
 LatLon lat_lon(MercatorPixel pixel, int zoom);
 
-/// Size of a pixel on the ground.
+/// Side of a pixel on the ground at that latitude, on the sphere that Web Mercator takes the Earth for.
 double metres_per_pixel(double lat_deg, int zoom);
 
 }  // namespace roadfix::api

@@ -12,15 +12,15 @@ namespace roadfix::autopilot {
 
 /// As in common.xml of 2026-07. Velocities and dilutions of precision are always flagged as to be ignored.
 struct GpsInput {
-  std::uint64_t time_usec = 0;
-  std::uint32_t time_week_ms = 0;
-  std::int32_t lat = 0;  ///< degrees E7
+  std::uint64_t time_usec = 0;     ///< PositionReport::captured_us
+  std::uint32_t time_week_ms = 0;  ///< since the begin of `time_week`
+  std::int32_t lat = 0;            ///< degrees E7
   std::int32_t lon = 0;
-  float alt = 0.0F;
-  float horiz_accuracy = 0.0F;
-  std::uint16_t ignore_flags = 0;
-  std::uint16_t time_week = 0;  ///< of GPS time; 0 with time_week_ms where the report's time is not since 1970
-  std::uint8_t fix_type = 0;    ///< 1 = none, 2 = without height, 3 = with height
+  float alt = 0.0F;                ///< metres above mean sea level
+  float horiz_accuracy = 0.0F;     ///< metres, Position::sigma_m
+  std::uint16_t ignore_flags = 0;  ///< of the fields that say nothing
+  std::uint16_t time_week = 0;     ///< of GPS time; 0 with time_week_ms where the report's time is not since 1970
+  std::uint8_t fix_type = 0;       ///< 1 = none, 2 = without height, 3 = with height
   std::uint8_t satellites_visible = 0;
   std::uint16_t yaw = 0;  ///< degrees E2, 36000 = north, 0 = not known
 };

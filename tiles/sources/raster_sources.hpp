@@ -19,11 +19,13 @@ double detection_gsd_m(double cell_m, double preferred_gsd_m, double native_gsd_
 
 /// Roads that `detector` sees in the imagery. Each block is read with the detector's halo, so that blocks join without
 /// seams. A block without data is unobserved and not looked at. The detector must outlive the source.
+/// Throws what Mosaic does, and InvalidInput "imagery-too-coarse" for pixels above kCoarsestGsdM.
 std::unique_ptr<CellSource> open_imagery(const std::vector<std::string>& paths, const RasterOptions& options,
                                          UtmZone zone, double cell_m, const RoadDetector& detector);
 
 /// Rasters of road: integers are masks (0 = no road, the largest value = road; they carry the certainties of drawn
-/// roads, see road_rules.hpp), floats are probabilities and stay as they are. Averaged over the area of each cell.
+/// roads, see road_rules.hpp), floats are probabilities and stay as they are. Averaged over the area of each cell,
+/// which is observed where at least half of that is. Throws what Mosaic and notes_on_road_values() do.
 std::unique_ptr<CellSource> open_road_raster(const std::vector<std::string>& paths, const RasterOptions& options,
                                              UtmZone zone, double cell_m);
 

@@ -21,15 +21,17 @@ class Canvas {
   /// The same of a polygon, by the circle around its box.
   bool sees(const Polyline& outline) const;
 
-  /// A polygon with smooth edges. Its height, where given, replaces that of the ground (metres).
+  /// A polygon with smooth edges. Its height, where given, replaces what stood there: metres above the ground.
   void fill(const Polyline& polygon, const Colour& colour, Material material);
   void fill(const Polyline& polygon, const Colour& colour, Material material, double height_m);
+  /// The same of a circle; a height of 0 leaves what stood there.
   void disc(PlanPoint centre, double radius_m, const Colour& colour, Material material, double height_m);
   /// A band along the line, round at its bends and ends.
   void stroke(const Polyline& line, double width_m, const Colour& colour, Material material);
 
   const cv::Rect& pixels() const { return pixels_; }
   double gsd_m() const { return gsd_m_; }
+  /// Of each pixel of the tile: red, green, blue; a Material; metres above the ground.
   cv::Mat3b& colour() { return colour_; }
   const cv::Mat1b& material() const { return material_; }
   const cv::Mat1f& height() const { return height_; }
@@ -40,8 +42,8 @@ class Canvas {
 
   cv::Rect pixels_;
   double gsd_m_;
-  cv::Rect2d ground_;
-  cv::Mat3b colour_;  ///< red, green, blue
+  cv::Rect2d ground_;  ///< plan coordinates, metres
+  cv::Mat3b colour_;
   cv::Mat1b material_;
   cv::Mat1f height_;
 };

@@ -10,22 +10,22 @@
 namespace roadfix::world {
 
 struct Conditions {
-  Angle sun_azimuth;     ///< clockwise from grid north, where the sun stands
-  Angle sun_elevation;   ///< above the horizon
-  PlanPoint lean;        ///< where tops of things appear: metres on the plan for each metre of height
-  double dust = 0.0;     ///< share of dust on streets and roofs
-  double asphalt = 1.0;  ///< brightness of the streets against the palette's
-  double haze = 0.0;     ///< share of scattered light, more where buildings fell
-  double winter = 0.0;   ///< 0 summer, 1 brown grass and bare trees
-  double contrast = 1.0;
-  Colour gain{1.0, 1.0, 1.0};
-  double blur_px = 0.6;
-  double noise = 2.0;  ///< of the sensor, grey levels
-  int noise_stream = 1;
+  Angle sun_azimuth;           ///< clockwise from grid north, where the sun stands
+  Angle sun_elevation;         ///< above the horizon
+  PlanPoint lean;              ///< where tops of things appear: metres on the plan for each metre of height
+  double dust = 0.0;           ///< share of dust on streets and roofs
+  double asphalt = 1.0;        ///< brightness of the streets against the palette's
+  double haze = 0.0;           ///< share of scattered light, more where buildings fell
+  double winter = 0.0;         ///< 0 summer, 1 brown grass and bare trees
+  double contrast = 1.0;       ///< factor on what a brightness differs from a middle grey
+  Colour gain{1.0, 1.0, 1.0};  ///< factors on red, green and blue after that
+  double blur_px = 0.6;        ///< 1 sigma
+  double noise = 2.0;          ///< of the sensor, 1 sigma in grey levels
+  int noise_stream = 1;        ///< pictures of different ones have different noise
 
   /// Unit vector on the plan from the sun onwards, the way shadows fall.
   PlanPoint shadow_direction() const { return {-std::sin(sun_azimuth.radians()), std::cos(sun_azimuth.radians())}; }
-  /// Length of the shadow of a thing one metre high.
+  /// Metres of shadow of a thing one metre high.
   double shadow_length() const { return 1.0 / std::tan(sun_elevation.radians()); }
 };
 

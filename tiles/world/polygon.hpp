@@ -1,4 +1,5 @@
-// Polygons of a plan: how large they are, how a line cuts them.
+// Polygons of a plan, in its metres: how large they are, how a line cuts them. They are closed without repeating their
+// first corner, run either way round, and have at least one corner.
 #pragma once
 
 #include <array>
@@ -10,12 +11,14 @@
 
 namespace roadfix::world {
 
+/// Square metres.
 double area_of(const Polyline& polygon);
+/// The mean of the corners, which need not lie within.
 PlanPoint middle_of(const Polyline& polygon);
 cv::Rect2d box_of(const Polyline& polygon);
-/// Unit direction of the longest side.
+/// Unit direction of the longest side; east where none has a length.
 PlanPoint longest_side(const Polyline& polygon);
-/// From the first to the last corner met in a unit direction.
+/// Metres from the first to the last corner met in a unit direction.
 double extent_along(const Polyline& polygon, PlanPoint along);
 
 struct Cut {

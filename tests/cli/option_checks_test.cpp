@@ -1,9 +1,12 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include <array>
+#include <optional>
 #include <string>
 
 #include "cli/date_check.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/word_option.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -42,6 +45,37 @@ TEST(Between, HoldsItsEndsAndTellsThemAsTheyAre) {
   for (const char* number : {"0.4999", "1", "nan", "-inf", "", "half"}) EXPECT_NE(complaint(share, number), "");
   EXPECT_EQ(complaint(share, "nan"), "must be a number of at least 0.5 and at most 0.999999, not nan");
   EXPECT_EQ(complaint(positive(), "0"), "must be a number above 0 and at most 2000000000, not 0");
+}
+
+enum class Dish { kSoup, kStew };
+constexpr std::array<Word<Dish>, 2> kDishes{{{"stew", Dish::kStew}, {"soup", Dish::kSoup}}};
+
+TEST(WordOption, TakesTheWordsOfItsTableAlone) {
+  CLI::App app;
+  Dish needed = Dish::kStew;
+  std::optional<Dish> wished;
+  add_word_option(app, "--dish", kDishes, needed, "");
+  add_word_option(app, "--wish", kDishes, wished, "");
+  app.parse("--dish soup");
+  EXPECT_EQ(needed, Dish::kSoup);
+  EXPECT_EQ(wished, std::nullopt);
+  app.parse("--wish stew");
+  EXPECT_EQ(wished, Dish::kStew);
+  for (const std::string other : {"sou", "Soup", "0"}) {
+    try {
+      app.parse("--dish " + other);
+      ADD_FAILURE() << other;
+    } catch (const CLI::ValidationError& refused) {
+      EXPECT_EQ(std::string(refused.what()), "--dish: " + other + " not in {stew,soup}");
+    }
+  }
+}
+
+TEST(WordOption, NamesItsWordsInTheHelp) {
+  CLI::App app;
+  Dish dish = Dish::kStew;
+  add_word_option(app, "--dish", kDishes, dish, "What there is");
+  EXPECT_THAT(app.help(), ::testing::HasSubstr("{stew,soup}"));
 }
 
 TEST(Milliseconds, AreNoneForNoTimeAlone) {

@@ -74,6 +74,18 @@ TEST(MeasurementModel, ByCorrelationHasAMeanRatioOfOneByChance) {
   EXPECT_NEAR(sum / kRuns, 1.0, 5.0 * 2.25 / std::sqrt(kRuns));
 }
 
+TEST(MeasurementModel, SaysAsMuchOfTheSameGroundInSmallerCells) {
+  std::mt19937_64 random(7);
+  const Cells large = seen(random, 0.5, 0.1);
+  MatchSums four_times;
+  for (std::size_t i = 0; i < 4 * large.m.size(); ++i) {
+    four_times.add(large.m[i / 4] ? 1.0 : 0.0, large.l[i / 4] ? 1.0 : 0.0);
+  }
+  const MeasurementModel model;
+  EXPECT_NEAR(model.log_likelihood(four_times, 8000, 8.0), model.log_likelihood(sums_of(large.m, large.l), 2000, 16.0),
+              1e-9);
+}
+
 TEST(MeasurementModel, FallsNoFurtherThanTheShareOfUselessFrames) {
   MeasurementModel model;
   std::mt19937_64 random(4);

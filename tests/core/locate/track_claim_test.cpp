@@ -18,6 +18,19 @@ TrackClaim supported_by(int measurements) {
 TEST(TrackClaim, IsSupportedByThreeMeasurements) {
   EXPECT_FALSE(supported_by(2).is_supported());
   EXPECT_TRUE(supported_by(3).is_supported());
+  TrackClaim found = supported_by(2);
+  found.confirm(0.98);
+  EXPECT_TRUE(found.is_supported()) << "a search that found it counts as one";
+}
+
+TEST(TrackClaim, IsSupportedByThreeMeasurementsHoweverManySpokeAgainstItBefore) {
+  TrackClaim claim;
+  for (int i = 0; i < 10; ++i) claim.reject();
+  claim.accept();
+  claim.accept();
+  EXPECT_FALSE(claim.is_supported());
+  claim.accept();
+  EXPECT_TRUE(claim.is_supported());
 }
 
 TEST(TrackClaim, IsTakenBackByThreeRejectionsInARowHoweverLongItWasSupported) {

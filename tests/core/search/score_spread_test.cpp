@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstddef>
+
+#include "core/search/search_scan.hpp"
 #include "tests/core/search/seen_town.hpp"
 
 namespace roadfix {
@@ -10,7 +14,8 @@ namespace {
 const Deadline kNoDeadline;
 
 struct Question : testing::SeenTown {
-  Question(std::uint64_t seed, int cells) : SeenTown(seed, 800, 700, 300.0, cells, cells) {}
+  Question(std::uint64_t seed, int cells, int map_cells = 800)
+      : SeenTown(seed, map_cells, map_cells - 100, 300.0, cells, cells) {}
 
   SearchResult answer() const { return search(read, 2.0, seen, region, {}); }
 };
@@ -29,6 +34,25 @@ TEST(ScoreSpread, IsThatOfAllPosesOfTheRegion) {
     ASSERT_TRUE(sampled);
     EXPECT_NEAR(*sampled, scanned, kTolerance * scanned) << seed;
   }
+}
+
+TEST(ScoreSpread, IsThatOfAllPosesAlsoOfARegionOfWhichOnlyTheGroundBelowTheSampleIsRead) {
+  Question question(1, 40, 1400);
+  const double scanned = SearchScan(question.levels(), {}).run().sd;
+  std::size_t windows = 0;
+  question.read = [&, read = question.read](const GridGeometry& window) {
+    ++windows;
+    return read(window);
+  };
+  const auto sampled = score_spread(question.levels().coarse(), question.region, kNoDeadline);
+  EXPECT_EQ(windows, 256U);
+  EXPECT_NEAR(sampled.value(), scanned, kTolerance * scanned);
+}
+
+TEST(ScoreSpread, IsNotToldWhereTimeRanOut) {
+  const Question question(1, 150);
+  const Deadline over({}, std::chrono::steady_clock::now());
+  EXPECT_EQ(score_spread(question.levels().coarse(), question.region, over), std::nullopt);
 }
 
 TEST(ScoreSpread, IsToldInCellsOf8MetresWhereTheScanHasCoarserOnes) {

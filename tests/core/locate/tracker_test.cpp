@@ -165,6 +165,17 @@ TEST_F(Track, CountsLostStepsAndWidensForThem) {
   EXPECT_GT(late.clusters[0].ellipse.sigma_m[0], sure + 5.0);
 }
 
+TEST_F(Track, TellsTheDoubtOfItsFilterAndHowManyParticlesItHas) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 7);
+  fly(tracker, flight, 2);
+  state_.filter.slow_fit = 0.8;
+  state_.filter.fast_fit = 0.6;
+  const TrackEstimate unseeing = advance(tracker, flight.step(false));
+  EXPECT_NEAR(unseeing.doubt, 0.25, 1e-9);
+  EXPECT_EQ(unseeing.particles, state_.filter.particles.size());
+}
+
 TEST_F(Track, TakesAFrameThatShowsNothingNeitherForNorAgainstItsPlace) {
   const Tracker tracker(view_, settings());
   StepInput input;

@@ -79,6 +79,19 @@ TEST(Copy, IsWhatIsNeverQuiteAsSureOfTheSameRoads) {
   EXPECT_TRUE(is_copy(shared(town(), doubted)));
 }
 
+TEST(Copy, IsWhatDoubtsTheSameRoadsElsewhere) {
+  // As of one image, read by two networks.
+  CellArray one = town();
+  CellArray other = town();
+  for (int row = 0; row < kTileCells; ++row) {
+    for (int col = 0; col < kTileCells; ++col) {
+      Cell& doubted = row / 4 % 2 == 0 ? one.at(col, row) : other.at(col, row);
+      if (col / 4 % 2 == 0) doubted = static_cast<Cell>(doubted / 2);
+    }
+  }
+  EXPECT_TRUE(is_copy(shared(one, other)));
+}
+
 TEST(Copy, IsWhatSaysTheSameWhereverItSaysAnything) {
   CellArray part = town();
   for (int row = 0; row < kTileCells; ++row) std::fill_n(part.row(row).begin(), 200, kUnobserved);

@@ -102,6 +102,7 @@ TEST(SourceShift, HoldsWhereHalfOfTheGroundWasNotObserved) {
   ASSERT_TRUE(shift);
   EXPECT_EQ(shift->east_m, -24.0);
   EXPECT_EQ(shift->north_m, 0.0);
+  EXPECT_GT(shift->correlation, 0.99) << "of what both observed";
 }
 
 TEST(SourceShift, HasACorrelationOfOneAtMostWhereSquaresWereObservedInPart) {

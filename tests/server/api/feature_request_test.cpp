@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <opencv2/core.hpp>
+#include <vector>
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/frame_camera.hpp"
@@ -168,6 +169,42 @@ TEST(FeatureRequest, RefusesWhatItWouldNotLookAt) {
   EXPECT_EQ(refused_beside({{"cell_m", 2}, {"cols", 2}}), "bad-parameter cols");
   EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"cells", "AP4="}}), "bad-parameter cells");
   EXPECT_EQ(refused_beside({{"kind", "frame"}, {"gsd_m", 1}, {"rows", 2}}), "bad-parameter rows");
+}
+
+TEST(FeatureRequest, TakesCellsRowByRowAsManyAsItSays) {
+  const auto seen_in = [](int cols, int rows, const Limits& limits = {}) {
+    const nlohmann::json cells{{"cell_m", 2}, {"cols", cols}, {"rows", rows}, {"cells", "AGT+/wEC"}};
+    return features_of(json_content(cells), {NoRoads(), 2.0}, limits).map.cells;
+  };
+  const CellArray cells = seen_in(3, 2);
+  EXPECT_EQ(cells.cols(), 3);
+  EXPECT_EQ(std::vector(cells.cells().begin(), cells.cells().end()), (std::vector<Cell>{0, 100, 254, 255, 1, 2}));
+  EXPECT_EQ(refused([&] { seen_in(3, 3); }), "bad-parameter cells");
+  EXPECT_EQ(refused([&] { seen_in(1, 2); }), "bad-parameter cells");
+  Limits limits;
+  limits.cells = 5;
+  EXPECT_EQ(testing::code_of([&] { seen_in(3, 2, limits); }), "too-many-cells");
+}
+
+TEST(FeatureRequest, RefusesAFrameOfMorePixelsOrCellsThanAreAllowedAsTheDetectorDrawsThem) {
+  class InFinerPixels : public NoRoads {
+    double preferred_gsd_m() const override { return 0.5; }
+  };
+  const auto code = [](const Limits& limits) {
+    Content content = json_content({{"kind", "frame"}, {"gsd_m", 2}, {"cell_m", 0.5}});
+    give_picture(content, testing::encoded(".png", cv::Mat(20, 30, CV_8UC1, cv::Scalar(128))));
+    return testing::code_of([&] { features_of(content, {InFinerPixels(), 2.0}, limits); });
+  };
+  Limits just;
+  just.pixels = 9'600;  // four times finer both ways
+  just.cells = 9'600;
+  EXPECT_EQ(code(just), "no error");
+  Limits fewer_pixels = just;
+  --fewer_pixels.pixels;
+  EXPECT_EQ(code(fewer_pixels), "ground-too-large");
+  Limits fewer_cells = just;
+  --fewer_cells.cells;
+  EXPECT_EQ(code(fewer_cells), "too-many-cells");
 }
 
 constexpr const char* kDrone =

@@ -24,7 +24,6 @@ void PlanePolygon::add_ring(const std::vector<GridPoint>& ring) {
 /// Strips as high as an edge is on average: then all of them together hold at most three times as many edges as there
 /// are, however many reach through several strips.
 void PlanePolygon::sort_into_strips() {
-  starts_.assign(2, 0);
   if (edges_.empty()) return;
   double rise_m = 0.0;
   double north_m = edges_.front().from.north_m;

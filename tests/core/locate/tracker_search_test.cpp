@@ -164,12 +164,15 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
   fly(tracker, flight, 15);
   flight.jump_to({{601'200.0, 6'398'950.0}, Angle::degrees(200.0)});
   int recovered = -1;
+  int searched = 0;
   for (int i = 0; i < 60 && recovered < 0; ++i) {
     const TrackEstimate estimate = advance(tracker, flight.step());
+    searched += estimate.measurement == Measurement::kSearched ? 1 : 0;
     const bool right = error_m(estimate, flight.pose()) < 20.0;
     EXPECT_TRUE(i < 12 || right || !estimate.converged) << "still sure of the wrong place";
     if (estimate.converged && right) recovered = i;
   }
+  EXPECT_EQ(searched, 1) << "what a search has found is followed";
   EXPECT_GE(recovered, 0);
   EXPECT_LT(recovered, 40);
 }

@@ -10,6 +10,18 @@
 #include "tiles/sources/exported_roads.hpp"
 
 namespace roadfix {
+namespace {
+
+/// 1 and `largest` alone, where `certain` is taken for a certain road.
+std::string note_on_labels(const std::string& path, double largest, double certain) {
+  return fmt::format(
+      "{0}: its values are 1 and {1:g}, as labels are, and count as {2:.3g} and {3:.3g} % road. If {1:g} is road and 1 "
+      "is not, rescale them (gdal_translate -scale 1 {1:g} 0 {4:g}); if 1 is road and {1:g} means nothing, mark that "
+      "as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
+      path, largest, 100.0 / certain, 100.0 * largest / certain, certain);
+}
+
+}  // namespace
 
 void require_shares(const std::string& path, const ValueRange& values, const ValueRange& range, bool integers) {
   constexpr double kResampling = 0.1;  // by which cubic resampling overshoots
@@ -27,8 +39,8 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
   const double high = values.seen.high;
   if (low > high) return {};
   require_shares(path, values.seen, range, values.integers);
+  if (values.ones_only && low == 1.0) return {note_on_labels(path, high, range.high)};
   constexpr double kHalf = 0.5;
-  const bool labels = values.ones_only && low == 1.0;
   std::vector<std::string> notes;
   if (low > kHalf * range.high) {
     notes.push_back(fmt::format(
@@ -42,7 +54,7 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
         "look at its values (gdalinfo -stats), and ingest the right ones with --replace",
         path));
   }
-  if (values.integers && !labels && high > 0.0 && high < kHalf * range.high) {
+  if (values.integers && high > 0.0 && high < kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: its largest value is {:g} of {:g}, so that no road is surer than {:.0f} %. If it stands for certain, "
         "rescale it (gdal_translate -scale 0 {:g} 0 {:g})",
@@ -55,13 +67,7 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
         "make bytes of them (gdal_translate -ot Byte -scale 0 65535 0 255) and use --replace",
         path, high));
   }
-  if (labels) {
-    notes.push_back(fmt::format(
-        "{0}: its values are 1 and {1:g}, as labels are, and count as {2:.3g} and {3:.3g} % road. If {1:g} is road and "
-        "1 is not, rescale them (gdal_translate -scale 1 {1:g} 0 {4:g}); if 1 is road and {1:g} means nothing, mark "
-        "that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
-        path, high, 100.0 / range.high, 100.0 * high / range.high, range.high));
-  } else if (values.ones_only) {
+  if (values.ones_only) {
     notes.push_back(fmt::format(
         "{0}: its values are 0 and 1, but for some of {1:g}, so that 1 counts as {2:.2g} % road. If 1 is "
         "road and {1:g} means nothing, mark that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",

@@ -170,6 +170,7 @@ TEST_F(SparseRoadRaster, ValuesThatMayMeanAnotherRangeGetANote) {
   EXPECT_THAT(notes(GDT_UInt16, 0.0, 0.0, 1.0), ::testing::IsEmpty());
   EXPECT_THAT(notes(GDT_Byte, 1.0, 0.0, 255.0), ::testing::Contains(HasSubstr("mark that as nodata")));
   EXPECT_THAT(notes(GDT_Byte, 0.0, 0.0, 255.0), ::testing::IsEmpty());
+  EXPECT_THAT(notes(GDT_UInt16, 1.0, 1.0, 2.0), ElementsAre(HasSubstr("as labels are")));
 }
 
 TEST_F(RoadRaster, CopiesOfMapsAndExportsByOtherProgramsGetANote) {

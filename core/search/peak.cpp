@@ -22,10 +22,45 @@ void for_each_pose(const PeakScores& scores, Visit visit) {
   }
 }
 
-/// Top of the parabola through three scores, the middle one the largest.
-double vertex(double before, double middle, double after) {
-  const double bend = 2.0 * middle - before - after;
-  return bend > 0.0 ? std::clamp(0.5 * (after - before) / bend, -0.5, 0.5) : 0.0;
+/// A parabola through the middle and its neighbours along and between the axes.
+struct Parabola {
+  std::array<double, 3> slope{};  ///< in the middle
+  std::array<std::array<double, 3>, 3> bend{};
+};
+
+Parabola parabola_of(const PeakScores& scores) {
+  const auto at = [&](std::size_t i, int along_i, std::size_t j, int along_j) {
+    std::array<int, 3> pose{};
+    pose[i] += along_i;
+    pose[j] += along_j;
+    return scores.at(pose[0], pose[1], pose[2]);
+  };
+  Parabola parabola;
+  for (std::size_t i = 0; i < 3; ++i) {
+    parabola.slope[i] = 0.5 * (at(i, 1, i, 0) - at(i, -1, i, 0));
+    for (std::size_t j = 0; j < 3; ++j) {
+      parabola.bend[i][j] = i == j ? at(i, 1, i, 0) + at(i, -1, i, 0) - 2.0 * scores.at(0, 0, 0)
+                                   : 0.25 * (at(i, 1, j, 1) + at(i, -1, j, -1) - at(i, 1, j, -1) - at(i, -1, j, 1));
+    }
+  }
+  return parabola;
+}
+
+/// Within +-0.5 on each axis, by coordinate ascent. All axes together: along a road, or where a turn makes up for a
+/// step aside, the top of each axis by itself lies elsewhere.
+std::array<double, 3> top_of(const Parabola& parabola) {
+  constexpr int kRounds = 50;
+  std::array<double, 3> offset{};
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const double bend = parabola.bend[i][i];
+      if (bend >= 0.0) continue;  // flat, since the middle holds the largest score
+      double slope = parabola.slope[i];
+      for (std::size_t j = 0; j < 3; ++j) slope += j == i ? 0.0 : parabola.bend[i][j] * offset[j];
+      offset[i] = std::clamp(-slope / bend, -0.5, 0.5);
+    }
+  }
+  return offset;
 }
 
 }  // namespace
@@ -63,9 +98,7 @@ std::array<int, 3> highest(const PeakScores& scores) {
 PeakShape shape_of(const PeakScores& scores, const ScoreBackground& background) {
   PeakShape shape;
   const double top = scores.at(0, 0, 0);
-  shape.offset = {vertex(scores.at(-1, 0, 0), top, scores.at(1, 0, 0)),
-                  vertex(scores.at(0, -1, 0), top, scores.at(0, 1, 0)),
-                  vertex(scores.at(0, 0, -1), top, scores.at(0, 0, 1))};
+  shape.offset = top_of(parabola_of(scores));
   const double top_likelihood = background.log_likelihood(top);
   double total = 0.0;
   for_each_pose(scores, [&](int col, int row, int bin, double score) {

@@ -71,6 +71,20 @@ TEST(PeakShape, TellsWhatGoesTogether) {
   expect_near(columns_and_bins.covariance, {{{a, 0.0, b}, {0.0, 0.5, 0.0}, {b, 0.0, a}}});
 }
 
+TEST(PeakShape, HasItsTopWhereAHillThatLeansOverAllAxesHasIt) {
+  const Offset top{0.3, -0.2, 0.25};
+  for (const double leaning : {0.0, 0.3, -0.5}) {
+    const PeakShape shape = shape_of(scores_of([&](const Offset& at) {
+                                       const double x = at[0] - top[0];
+                                       const double y = at[1] - top[1];
+                                       const double z = at[2] - top[2];
+                                       return 0.8 - 0.01 * (x * x + y * y + z * z + 2.0 * leaning * (x * y - y * z));
+                                     }),
+                                     sharp());
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(shape.offset[i], top[i], 1e-3) << i << " leaning " << leaning;
+  }
+}
+
 TEST(PeakShape, HasItsTopNoFartherThanHalfAStepAway) {
   for (const double slope : {0.01, -0.01}) {
     const PeakShape shape = shape_of(

@@ -195,9 +195,10 @@ void run_bench(BenchArguments& arguments) {
   if (!arguments.calibrate_file.empty()) learn(arguments, origin, outcomes, out);
   if (!arguments.calibrate_headings_file.empty()) learn_headings(arguments, origin, outcomes, out);
   if (!left_out.empty()) {
-    throw InvalidInput("no-place-for-query",
-                       fmt::format("{} of {} sets of queries could not be asked:\n  {}", left_out.size(),
-                                   manifest.queries.size(), fmt::join(left_out, "\n  ")));
+    throw InvalidInput(
+        "queries-left-out",
+        fmt::format("{} sets of queries or frames could not be asked, the others have their result:\n  {}",
+                    left_out.size(), fmt::join(left_out, "\n  ")));
   }
 }
 

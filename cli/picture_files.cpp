@@ -34,12 +34,6 @@ std::vector<fs::path> pictures_in(const fs::path& folder, std::initializer_list<
   return files;
 }
 
-/// And not of the machine, nor an end that was asked for: other pictures may do.
-bool is_about_input(const Error& error) {
-  return dynamic_cast<const InvalidInput*>(&error) != nullptr || dynamic_cast<const NotFound*>(&error) != nullptr ||
-         dynamic_cast<const LimitExceeded*>(&error) != nullptr;
-}
-
 /// Why `work` could not be done; nullopt where it was.
 std::optional<std::string> reason_against(const fs::path& file, const std::function<void(const fs::path&)>& work) {
   try {

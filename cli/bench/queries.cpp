@@ -113,9 +113,9 @@ DrawnQueries at_poses(const PoseSampling& sampling, const UtmZone& zone, const s
     const auto pose = draw_pose(sampling, random);
     if (!pose) {
       return {{},
-              fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its observed "
-                          "part and the map '{}'",
-                          describe(set), set.footprint.width_m, set.footprint.height_m, set.map)};
+              {fmt::format("{}: no place was found where a footprint of {} x {} m lies inside the imagery, its "
+                           "observed part and the map '{}'",
+                           describe(set), set.footprint.width_m, set.footprint.height_m, set.map)}};
     }
     Query query;
     query.id = fmt::format("{}/{:04}", name, i);
@@ -170,20 +170,29 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
-SharedView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector) {
-  return std::make_shared<GroundView>(view_of(read_frame(set.path.parent_path(), frame, set.border), frame, detector));
+/// nullptr where the frame cannot be read; why is added to `left_out`.
+SharedView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector,
+                   std::vector<std::string>& left_out) {
+  try {
+    return std::make_shared<GroundView>(
+        view_of(read_frame(set.path.parent_path(), frame, set.border), frame, detector));
+  } catch (const Error& error) {
+    if (!is_about_input(error)) throw;
+    left_out.push_back(fmt::format("{}: {} [{}]", describe(set), error.what(), error.code()));
+    return nullptr;
+  }
 }
 
-/// `queries` are those of the frames so far, in their order.
+/// `views` are those of the frames so far, in their order; nullptr where one cannot be read.
 std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
-                                        const UtmZone& zone, const std::vector<Query>& queries) {
+                                        const UtmZone& zone, const std::vector<SharedView>& views) {
   std::vector<EarlierFrame> earlier;
   const FrameTruth& reference = frames[index];
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
-    if (frame.sequence != reference.sequence) continue;  // flights may take turns in the file
+    if (frame.sequence != reference.sequence || !views[index]) continue;  // flights may take turns in the file
     const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
-    earlier.push_back({queries[index].view, offset});
+    earlier.push_back({views[index], offset});
   }
   return earlier;
 }
@@ -211,26 +220,29 @@ void require_places_near(const MapView& map, const std::vector<FrameTruth>& fram
                                                           set.path.string(), described(*far), map.id.name, kAdvice));
 }
 
-std::vector<Query> real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
-                               const QueryDrawing& drawing) {
+DrawnQueries real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
+                         const QueryDrawing& drawing) {
   const auto frames = evaluation::read_frames_csv(set.path);
   require_places_near(map, frames, set);
-  std::vector<Query> queries;
+  DrawnQueries drawn;
+  std::vector<SharedView> views;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
+    views.push_back(seen_in(frame, set, detector, drawn.left_out));
+    if (!views.back()) continue;
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     Query query;
     query.id = frame.file.string();
     if (!set.elsewhere) query.truth = frame.pose;
-    query.view = seen_in(frame, set, detector);
+    query.view = views.back();
     tell_prior(query, set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                frame.pose.heading, set, map, random);
     query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
-    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, queries);
-    queries.push_back(std::move(query));
+    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, views);
+    drawn.queries.push_back(std::move(query));
   }
-  return queries;
+  return drawn;
 }
 
 /// ", 60 % erased, 0 to 4 m shifted"; empty where nothing is wrong.
@@ -270,7 +282,7 @@ DrawnQueries make_queries(const QuerySet& set, const MapView& map, const MapView
     case QuerySet::Kind::kImage:
       return from_imagery(set, map, drawing);
     case QuerySet::Kind::kFrames:
-      return {real_frames(set, map, detector, drawing), {}};
+      return real_frames(set, map, detector, drawing);
     case QuerySet::Kind::kSimulated:
       return simulated(set, map, from, drawing);
   }

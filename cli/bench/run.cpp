@@ -81,6 +81,17 @@ std::vector<Outcome> ask(const Method& method, const std::vector<Query>& queries
   return outcomes;
 }
 
+/// None of a set that cannot be used: the others are worth asking all the same.
+DrawnQueries queries_of(const QuerySet& set, const MapView& map, const MapView& from, const RoadDetector& detector,
+                        const QueryDrawing& drawing) {
+  try {
+    return make_queries(set, map, from, detector, drawing);
+  } catch (const Error& error) {
+    if (!is_about_input(error)) throw;
+    return {{}, {fmt::format("{}: {} [{}]", describe(set), error.what(), error.code())}};
+  }
+}
+
 }  // namespace
 
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options) {
@@ -103,9 +114,9 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
         continue;
       }
       const auto detector = options.detectors->for_map(map.imagery_reader);
-      const auto [queries, why_none] =
-          make_queries(set, map, maps.at(set.from), *detector, {options.seed, i, options.limit});
-      if (!why_none.empty()) options.left_out(why_none);  // the other sets are worth asking all the same
+      const auto [queries, left_out] =
+          queries_of(set, map, maps.at(set.from), *detector, {options.seed, i, options.limit});
+      for (const std::string& why : left_out) options.left_out(why);
       if (queries.empty()) continue;
       for (const MethodName name : manifest.methods) {
         if (!methods[name]) continue;

@@ -20,10 +20,10 @@ struct BenchOptions {
   FixOptions fix;
   std::filesystem::path pictures;  ///< folder for a picture of every query and method; empty = none
   std::function<void(const std::string& task, std::int64_t done, std::int64_t total)> progress;
-  std::function<void(const std::string& why)> left_out;  ///< told of each set that cannot be asked
+  std::function<void(const std::string& why)> left_out;  ///< told of each set and each frame that cannot be asked
 };
 
-/// Of the sets of queries that could be asked. Throws IoFailure "result-unwritable", Interrupted "work-stopped" when
+/// Of the queries that could be asked. Throws IoFailure "result-unwritable", Interrupted "work-stopped" when
 /// maps.stop is requested.
 std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options);
 

@@ -9,4 +9,9 @@ Error::Error(std::string code, const std::string& message) : std::runtime_error(
   assert(code_.find('-') != std::string::npos);
 }
 
+bool is_about_input(const Error& error) {
+  return dynamic_cast<const InvalidInput*>(&error) != nullptr || dynamic_cast<const NotFound*>(&error) != nullptr ||
+         dynamic_cast<const LimitExceeded*>(&error) != nullptr;
+}
+
 }  // namespace roadfix

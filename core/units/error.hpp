@@ -54,6 +54,9 @@ class InUse : public Error {
   using Error::Error;
 };
 
+/// About this input and not the machine, nor an end that was asked for: another input may do.
+bool is_about_input(const Error& error);
+
 /// What `work` returns; what is wrong with its input is said of `where` ("frame.png: ...").
 template <typename Work>
 auto said_of(const std::string& where, const Work& work) {

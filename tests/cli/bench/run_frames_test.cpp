@@ -9,14 +9,14 @@
 
 #include "core/detect/frame_camera.hpp"
 #include "core/locate/told_frames.hpp"
-#include "core/units/error.hpp"
 #include "tests/cli/bench/bench_run.hpp"
 
 namespace roadfix::bench {
 namespace {
 
+using ::testing::AllOf;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 using BenchRunOfFrames = BenchRun;
 
@@ -134,11 +134,29 @@ TEST_F(BenchRunOfFrames, CountsAFrameBeyondTheMapAsNotFoundWhateverIsToldOfItsPl
   }
 }
 
+TEST_F(BenchRunOfFrames, LeavesOutFramesThatCannotBeReadAndAsksTheOthers) {
+  take_flight(folder.path());
+  std::filesystem::resize_file(folder / "flight1.png", 2000);
+  std::ofstream(folder / "flight.csv", std::ios::app) << "a,lost.png,36.13,19.89,0,1\n";
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  const auto results = run(R"({"map": "town", "frames": "flight.csv", "together": 2})", R"("roads")");
+  EXPECT_THAT(left_out, ElementsAre(AllOf(HasSubstr("flight1.png: "), HasSubstr("[image-damaged]")),
+                                    AllOf(HasSubstr("lost.png"), HasSubstr("[file-not-found]"))));
+  ASSERT_EQ(results.at(0).outcomes.size(), 2U);
+  const Outcome& after = results[0].outcomes[1];
+  EXPECT_EQ(after.id, "flight2.png");
+  EXPECT_LT(after.error_m.value(), 3.0) << "laid together with the frame before the damaged one";
+  EXPECT_GE(after.answer.mode.value().ellipse.sigma_m[1], 70.0 * kToldOffsetShare);
+}
+
 TEST_F(BenchRunOfFrames, NamesTheFrameWhoseCameraCannotBe) {
   std::ofstream(folder / "level.csv") << "file,lat,lon,heading_deg,agl_m,fov_deg,pitch_deg\n"
                                          "frame.png,36.13,19.89,0,250,60,89\n";
-  EXPECT_THAT([&] { run(R"({"map": "town", "frames": "level.csv", "elsewhere": true})", R"("roads")"); },
-              ThrowsMessage<InvalidInput>(HasSubstr("frame.png: ")));
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  EXPECT_TRUE(run(R"({"map": "town", "frames": "level.csv", "elsewhere": true})", R"("roads")").empty());
+  EXPECT_THAT(left_out, ElementsAre(HasSubstr("frame.png: ")));
 }
 
 }  // namespace

@@ -114,7 +114,10 @@ TEST_F(BenchRun, RefusesToLookForAPlaceOfAnotherZone) {
     "queries": [{"map": "town", "from": "other", "image": null, "count": 2, "footprint_m": [200, 200]}],
     "methods": ["roads"]})",
                                            folder.path());
-  EXPECT_THAT([&] { bench::run(manifest, options); }, ThrowsMessage<InvalidInput>(HasSubstr("UTM zones")));
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  EXPECT_TRUE(bench::run(manifest, options).empty());
+  EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("UTM zones")));
 }
 
 TEST_F(BenchRun, GivesTheSameAnswersWithAnotherNumberOfJobsAndAFoundMap) {
@@ -141,6 +144,14 @@ TEST_F(BenchRun, AsksTheOtherSetsWhereAFootprintFitsNowhere) {
   EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("2000 x 100 m")));
   ASSERT_EQ(results.size(), 1U);
   EXPECT_EQ(results[0].outcomes.size(), 3U);
+}
+
+TEST_F(BenchRun, AsksTheOtherSetsWhereTheFileOfOneIsMissing) {
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  const auto results = run(std::string(R"({"map": "town", "frames": "lost.csv"}, )") + kImageQueries, "\"roads\"");
+  EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("lost.csv")));
+  EXPECT_EQ(results.size(), 1U);
 }
 
 TEST_F(BenchRun, SaysThatKeypointsCannotBeComparedWithAMapWithoutImagery) {

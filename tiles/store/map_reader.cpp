@@ -36,7 +36,7 @@ struct Channel {
         data_version(*map, "PRAGMA data_version") {}
   std::unique_ptr<Connection> map;
   Statement select;
-  Statement data_version;  ///< another number whenever somebody has written to the file
+  Statement data_version;  ///< another number whenever a writer of SQLite has written to the file
   std::optional<std::int64_t> unchanged_at;
 };
 
@@ -62,7 +62,7 @@ TileCache::Tile load_tile(Channel& channel, TileIndex tile, int zoom) {
 
 struct MapReader::State {
   State(const std::filesystem::path& name, std::size_t cache_bytes, std::chrono::milliseconds wait)
-      : path(name), patience(wait), file(identity_of(name)), cache(cache_bytes) {
+      : path(name), patience(wait), file(identity_of(name)), looked_at(stamp_of(name)), cache(cache_bytes) {
     Channel first(open_map(path, Access::kRead, patience));
     info = read_info(*first.map);
     idle.push_back(std::move(first));
@@ -74,9 +74,11 @@ struct MapReader::State {
   auto with_channel(const Use& use) {
     Channel channel = take();
     auto result = recovering(channel, [&](Channel& own) {
-      const Transaction one_view(*own.map, Transaction::Kind::kRead);
-      require_unchanged(own);
-      return use(own);
+      return unless_copied_into([&] {
+        const Transaction one_view(*own.map, Transaction::Kind::kRead);
+        require_unchanged(own);
+        return use(own);
+      });
     });
     const std::lock_guard lock(mutex);
     idle.push_back(std::move(channel));
@@ -104,10 +106,44 @@ struct MapReader::State {
     channel.data_version.step();
     const std::int64_t now = channel.data_version.integer(0);
     if (channel.unchanged_at == now) return;
-    if (read_version(*channel.map) != info->version || count_pending(*channel.map) != info->pending) {
-      throw renewed(path, "its tiles were changed");
-    }
+    require_same_tiles(*channel.map);
     channel.unchanged_at = now;
+  }
+
+  void require_same_tiles(Connection& map) const {
+    if (read_version(map) == info->version && count_pending(map) == info->pending) return;
+    throw renewed(path, "its tiles were changed");
+  }
+
+  /// Whoever copies another map into the file asks for no lock of SQLite, and where both were written to as often,
+  /// SQLite goes on with the pages of the old one that it has in memory.
+  template <typename Read>
+  auto unless_copied_into(const Read& read) {
+    require_not_copied_into();
+    try {
+      auto result = read();
+      require_not_copied_into();
+      return result;
+    } catch (const CorruptData&) {
+      require_not_copied_into();
+      throw;
+    }
+  }
+
+  /// Not within a transaction: another connection waits for a writer, and that for the end of the transaction.
+  void require_not_copied_into() {
+    const std::optional<FileStamp> now = stamp_of(path);
+    {
+      const std::lock_guard lock(mutex);
+      if (now == looked_at) return;
+    }
+    if (now && now->identity == file) {
+      Connection afresh = open_map(path, Access::kRead, patience);
+      const Transaction one_view(afresh, Transaction::Kind::kRead);
+      require_same_tiles(afresh);
+    }
+    const std::lock_guard lock(mutex);
+    looked_at = now;
   }
 
   /// A writer may be killed while we read.
@@ -132,7 +168,8 @@ struct MapReader::State {
 
   std::filesystem::path path;
   std::chrono::milliseconds patience;
-  std::optional<FileIdentity> file;  ///< that all channels read, even if another has the name by now
+  std::optional<FileIdentity> file;    ///< that all channels read, even if another has the name by now
+  std::optional<FileStamp> looked_at;  ///< when it held the map last; guarded by `mutex`
   std::optional<MapInfo> info;
   TileCache cache;
   std::mutex mutex;

@@ -30,8 +30,9 @@ class MapReader {
   MapReader& operator=(MapReader&&) noexcept;
 
   /// As it was when the map was opened. A reader never mixes versions: once a writer has changed tiles, all that is not
-  /// in the cache throws InUse ("map-renewed"), and a new reader has to be made. Nor does it read another file that
-  /// took the map's place: calls that would have to open it throw that, too.
+  /// in the cache throws InUse ("map-renewed"), and a new reader has to be made; so it is where another map is copied
+  /// into the file (CorruptData while that lasts). Nor does it read another file that took the map's place: calls that
+  /// would have to open it throw that, too.
   const MapInfo& info() const;
 
   /// Fused cells, unobserved where the map has none. geometry.cell_m = settings.cell_m * 2^level with level >= 0, at

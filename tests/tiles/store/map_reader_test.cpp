@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "core/grid/resample.hpp"
@@ -140,6 +143,32 @@ TEST_F(MapReaderTest, ReadsNothingThatAWriterHasChangedUntilTheMapIsAsItWas) {
   EXPECT_EQ(reader.tile(0, other), random_cells(source.seed, other));
   testing::open_sqlite(path).execute("INSERT INTO roadfix_pending VALUES (8, 0, 0)");
   EXPECT_EQ(testing::code_of([&] { reader.tile(1, {0, -1}); }), "map-renewed") << "overviews that wait to be made anew";
+}
+
+TEST_F(MapReaderTest, ReadsNothingOfAMapThatIsCopiedIntoTheFile) {
+  namespace fs = std::filesystem;
+  const fs::path other = folder / "other.gpkg";
+  fs::copy_file(path, other);
+  testing::open_sqlite(other).execute("UPDATE roadfix_meta SET value = '0123456789abcdef' WHERE key = 'version'");
+  {  // written to as often and as long as the other, by which SQLite tells whether its pages in memory still hold
+    std::array<char, 100> header{};
+    std::ifstream(path).read(header.data(), header.size());
+    std::fstream(other, std::ios::in | std::ios::out).write(header.data(), header.size());
+  }
+  const MapReader reader(path, 0);
+  for (const TileIndex block : source.blocks) EXPECT_EQ(reader.tile(0, block), random_cells(source.seed, block));
+  fs::copy_file(other, path, fs::copy_options::overwrite_existing);
+  for (const TileIndex block : source.blocks) {
+    EXPECT_EQ(testing::code_of([&] { reader.tile(0, block); }), "map-renewed");
+  }
+  fs::resize_file(path, fs::file_size(path) / 2);
+  EXPECT_EQ(testing::code_of([&] { reader.tile(0, source.blocks[0]); }), "map-cut-off") << "while it is copied";
+}
+
+TEST_F(MapReaderTest, ReadsOnInAFileThatWasOnlyTouched) {
+  const MapReader reader(path, 0);
+  std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now());
+  EXPECT_EQ(reader.tile(0, source.blocks[0]), random_cells(source.seed, source.blocks[0]));
 }
 
 TEST_F(MapReaderTest, ManyThreadsReadOneVersionWhileAWriterWritesAnother) {

@@ -1,14 +1,12 @@
 #include "tiles/sources/raster_reference.hpp"
 
-#include <cpl_conv.h>
-#include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <optional>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/geotransform.hpp"
+#include "tiles/sources/prj_file.hpp"
 
 namespace roadfix {
 namespace {
@@ -16,25 +14,6 @@ namespace {
 bool is_placed(GDALDataset& raster) {
   if (geotransform_of(raster)) return true;
   return raster.GetGCPCount() >= 3 || raster.GetMetadata("RPC") != nullptr;
-}
-
-/// Of the .prj file that comes with a world file, which GDAL reads beside few formats.
-std::optional<OGRSpatialReference> crs_beside(const std::string& path) {
-  const GdalMessages messages;
-  for (const char* extension : {"prj", "PRJ"}) {
-    const std::string file = CPLResetExtension(path.c_str(), extension);
-    VSIStatBufL stat;
-    if (VSIStatL(file.c_str(), &stat) != 0) continue;
-    CPLStringList lines(CSLLoad(file.c_str()));
-    OGRSpatialReference crs;
-    crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    if (crs.importFromESRI(lines.List()) == OGRERR_NONE) return crs;
-    throw InvalidInput("image-without-georeference",
-                       fmt::format("{}: holds no reference system in the WKT of ESRI ({}), which a .prj file does; "
-                                   "name it with --crs of ingest, for example --crs EPSG:32637",
-                                   file, messages.text()));
-  }
-  return std::nullopt;
 }
 
 std::optional<OGRSpatialReference> crs_within(GDALDataset& raster) {

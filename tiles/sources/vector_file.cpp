@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/prj_file.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/temporary_files.hpp"
 
@@ -93,14 +94,17 @@ std::string VectorFile::layer_names() const {
 }
 
 OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {
+  if (auto known = known_crs_of(layer)) return *known;
+  throw InvalidInput("roads-without-georeference",
+                     fmt::format("{}: layer '{}' has no reference system; name it with --crs, for example --crs "
+                                 "EPSG:32637",
+                                 path_, layer.GetName()));
+}
+
+std::optional<OGRSpatialReference> VectorFile::known_crs_of(OGRLayer& layer) const {
   if (!options_.crs.empty()) return parse_crs(options_.crs);
   const OGRSpatialReference* own = layer.GetSpatialRef();
-  if (own == nullptr) {
-    throw InvalidInput("roads-without-georeference",
-                       fmt::format("{}: layer '{}' has no reference system; name it with --crs, for example --crs "
-                                   "EPSG:32637",
-                                   path_, layer.GetName()));
-  }
+  if (own == nullptr) return crs_beside(path_);
   OGRSpatialReference crs = *own;
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return crs;
@@ -147,8 +151,7 @@ std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
 
 /// A layer without a reference system is refused by whoever needs one.
 CoordinateLimits VectorFile::limits_of(OGRLayer& layer) const {
-  const bool known = !options_.crs.empty() || layer.GetSpatialRef() != nullptr;
-  return coordinate_limits(known ? crs_of(layer) : wgs84_reference());
+  return coordinate_limits(known_crs_of(layer).value_or(wgs84_reference()));
 }
 
 void VectorFile::for_each_feature(const Visit& visit) {

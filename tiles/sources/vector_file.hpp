@@ -39,7 +39,7 @@ class VectorFile {
   bool is_openstreetmap() const { return osm_; }
   /// Of all layers of the file, "'roads', 'rivers'", for messages.
   std::string layer_names() const;
-  /// Throws InvalidInput "roads-without-georeference".
+  /// Throws InvalidInput "roads-without-georeference", "crs-unknown".
   OGRSpatialReference crs_of(OGRLayer& layer) const;
   /// What the file was cut out of the world with, in the layer's own coordinates: a vector tile, the box of an extract
   /// of OpenStreetMap. nullopt for other files, in which an extent only says where features are, or once were.
@@ -59,6 +59,7 @@ class VectorFile {
   void refuse_unread(const GdalMessages& messages) const;
   std::optional<OGREnvelope> bounding_box(OGRLayer& layer);
   CoordinateLimits limits_of(OGRLayer& layer) const;
+  std::optional<OGRSpatialReference> known_crs_of(OGRLayer& layer) const;
 
   std::string path_;
   VectorOptions options_;

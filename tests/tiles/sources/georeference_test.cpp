@@ -96,7 +96,7 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
   std::ofstream(folder / "a.prj") << "nonsense";
-  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "image-without-georeference");
+  EXPECT_EQ(code_of([&] { RasterFile(path, {}); }), "crs-unknown");
   EXPECT_THAT(testing::message_of([&] { RasterFile(path, {}); }),
               ::testing::HasSubstr((folder / "a.prj").string() + ": holds no reference system"));
   const std::string nonsense = fingerprint({path}, "");
@@ -110,6 +110,14 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   EXPECT_TRUE(RasterFile(path, {}).crs().IsSame(&utm));
   EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32633", .collar = {}}).crs()), "EPSG:32633");
   EXPECT_NE(fingerprint({path}, ""), nonsense);
+  for (const char* format : {"FORMAT=WKT2_2019", "FORMAT=WKT1_ESRI"}) {
+    char* text = nullptr;
+    const char* const options[] = {format, "MULTILINE=YES", nullptr};
+    utm.exportToWkt(&text, options);
+    std::ofstream(folder / "a.prj") << '\n' << text;
+    CPLFree(text);
+    EXPECT_TRUE(RasterFile(path, {}).crs().IsSame(&utm)) << format;
+  }
 }
 
 }  // namespace

@@ -86,6 +86,29 @@ TEST_F(RoadLayers, OfDegreesThatAreDeclaredAsMetresAreRefused) {
   }
 }
 
+TEST_F(RoadLayers, OfAShapefileMayHaveTheirReferenceSystemInWkt2) {
+  require_gdal();
+  const std::string path = (folder / "roads.shp").string();
+  {
+    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("ESRI Shapefile");
+    const DatasetPtr file(driver->Create(path.c_str(), 0, 0, 0, GDT_Unknown, nullptr));
+    OGRLayer* layer = file->CreateLayer("roads", nullptr, wkbLineString);
+    OGRLineString line;
+    line.addPoint(400'000, 4'200'000);
+    line.addPoint(400'100, 4'200'100);
+    OGRFeature road(layer->GetLayerDefn());
+    road.SetGeometry(&line);
+    ASSERT_EQ(layer->CreateFeature(&road), OGRERR_NONE);
+  }
+  EXPECT_EQ(code_of([&] { centre_of_roads({path}, {}); }), "roads-without-georeference");
+  char* wkt = nullptr;
+  const char* const options[] = {"FORMAT=WKT2_2019", nullptr};
+  utm_reference(kZone).exportToWkt(&wkt, options);
+  std::ofstream(folder / "roads.prj") << wkt;
+  CPLFree(wkt);
+  EXPECT_NEAR(centre_of_roads({path}, {}).lat_deg, kZone.unproject({400'050, 4'200'050}).lat_deg, 1e-6);
+}
+
 TEST_F(RoadLayers, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {
   const std::string empty = (folder / "empty.geojson").string();
   std::ofstream(empty) << R"({"type":"FeatureCollection","features":[]})";

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <limits>
 #include <numbers>
+#include <optional>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/gdal_session.hpp"
@@ -30,6 +34,25 @@ class CornersHeld final : public OGRDefaultConstGeometryVisitor {
   CoordinateLimits limits_;
   bool all_ = true;
 };
+
+/// In degrees, its east beyond its west. Of zones that a .prj file describes, too, whose WKT has no codes.
+std::optional<OGREnvelope> area_of_use(const OGRSpatialReference& crs) {
+  OGRSpatialReference known = crs;
+  if (crs.GetAuthorityCode(nullptr) == nullptr && known.AutoIdentifyEPSG() == OGRERR_NONE) {
+    known.importFromEPSG(std::atoi(known.GetAuthorityCode(nullptr)));
+  }
+  OGREnvelope area;
+  if (!known.GetAreaOfUse(&area.MinX, &area.MinY, &area.MaxX, &area.MaxY, nullptr)) return std::nullopt;
+  if (area.MaxX < area.MinX) area.MaxX += 360.0;
+  return area;
+}
+
+/// From the middle of an area, in widths or heights of it, whichever are more: 0.5 at its rim.
+double away_from(const OGREnvelope& area, double lon, double lat) {
+  const double east = std::remainder(lon - (area.MinX + area.MaxX) / 2.0, 360.0);
+  const double north = lat - (area.MinY + area.MaxY) / 2.0;
+  return std::max(std::abs(east) / (area.MaxX - area.MinX), std::abs(north) / (area.MaxY - area.MinY));
+}
 
 }  // namespace
 
@@ -58,6 +81,28 @@ void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference&
                      fmt::format("{}: its reference system {} has metres or feet, but its coordinates, {} {} to {} {}, "
                                  "look like degrees: give --crs EPSG:4326",
                                  path, crs_name(crs), box.MinX, box.MinY, box.MaxX, box.MaxY));
+}
+
+void refuse_swapped_axes(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+  if (crs.IsProjected() == FALSE) return;
+  const std::optional<OGREnvelope> area = area_of_use(crs);
+  if (!area) return;
+  const TransformationPtr to_earth = transformation(crs, wgs84_reference(), path);
+  const GdalMessages messages;
+  const auto away = [&](double x, double y) {
+    const bool on_earth = to_earth->Transform(1, &x, &y) != FALSE && std::isfinite(x) && std::isfinite(y);
+    return on_earth ? away_from(*area, x, y) : std::numeric_limits<double>::infinity();
+  };
+  const double x = (box.MinX + box.MaxX) / 2.0;
+  const double y = (box.MinY + box.MaxY) / 2.0;
+  if (away(x, y) <= 1.5 || away(y, x) > 0.5) return;
+  throw InvalidInput(
+      "axes-swapped",
+      fmt::format("{}: its coordinates, {:.1f} {:.1f} to {:.1f} {:.1f}, lie far from the ground that its "
+                  "reference system {} is for, and in it with easting and northing swapped: write the "
+                  "easting first, in a world file in the line before the last one, or give the right "
+                  "reference system with --crs of ingest",
+                  path, box.MinX, box.MinY, box.MaxX, box.MaxY, crs_name(crs)));
 }
 
 }  // namespace roadfix

@@ -26,4 +26,8 @@ CoordinateLimits coordinate_limits(const OGRSpatialReference& crs);
 /// longitudes and latitudes.
 void refuse_degrees_as_metres(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
 
+/// Throws InvalidInput "axes-swapped" where the middle of the box lies farther from the area that a projected reference
+/// system is meant for than that is wide or high, and with x and y swapped would lie in it.
+void refuse_swapped_axes(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
+
 }  // namespace roadfix

@@ -36,20 +36,20 @@ void require_pixels_with_area(const RasterFile& file) {
                                  file.path(), fmt::join(*to_reference, ", ")));
 }
 
-/// No camera's pixels are as fine in metres as pixels of degrees look there.
-void require_no_degrees_as_metres(const RasterFile& file) {
+void require_likely_coordinates(const RasterFile& file) {
   const auto transform = geotransform_of(file.dataset());
   if (!transform) return;
   const Geotransform& t = *transform;
-  const double side_m = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4])) * file.crs().GetLinearUnits();
-  if (side_m >= kFinestGsdM) return;
   OGREnvelope box;
   for (const int col : {0, file.size().width}) {
     for (const int row : {0, file.size().height}) {
       box.Merge(t[0] + t[1] * col + t[2] * row, t[3] + t[4] * col + t[5] * row);
     }
   }
-  refuse_degrees_as_metres(box, file.crs(), file.path());
+  // No camera's pixels are as fine in metres as pixels of degrees look there.
+  const double side_m = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4])) * file.crs().GetLinearUnits();
+  if (side_m < kFinestGsdM) refuse_degrees_as_metres(box, file.crs(), file.path());
+  refuse_swapped_axes(box, file.crs(), file.path());
 }
 
 void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_source) {
@@ -99,7 +99,7 @@ std::string area_of_interest(const RasterFile& file) {
 PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
   require_known_datum(file.crs(), target, file.path());
   require_pixels_with_area(file);
-  require_no_degrees_as_metres(file);
+  require_likely_coordinates(file);
   const GdalMessages messages;
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());

@@ -21,7 +21,7 @@ using PixelTransformerPtr = std::unique_ptr<void, DestroyTransformer>;
 class Georeference {
  public:
   /// Refers to the file, which must outlive it. Throws InvalidInput ("crs-not-transformable", "datum-unknown",
-  /// "image-without-georeference" where its geotransform gives pixels no area, "degrees-as-metres").
+  /// "image-without-georeference" where its geotransform gives pixels no area, "degrees-as-metres", "axes-swapped").
   Georeference(const RasterFile& file, UtmZone zone);
 
   /// Pixel coordinates of points on the plane; NaN where a point has no place in the image's reference system.

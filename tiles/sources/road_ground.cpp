@@ -40,9 +40,14 @@ void require_one_side_of_the_earth(const OGREnvelope& box, const OGRSpatialRefer
 
 }  // namespace
 
-void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer) {
+void require_likely_coordinates(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path) {
+  refuse_degrees_as_metres(box, crs, path);
+  refuse_swapped_axes(box, crs, path);
+}
+
+void require_likely_coordinates(VectorFile& file, const RoadLayer& layer) {
   const std::optional<OGREnvelope> box = layer.extent_seen();
-  if (layer.counts().lines > 0 && box) refuse_degrees_as_metres(*box, file.crs_of(layer.layer()), file.path());
+  if (layer.counts().lines > 0 && box) require_likely_coordinates(*box, file.crs_of(layer.layer()), file.path());
 }
 
 void refuse_as_nowhere(VectorFile& file, const RoadLayer& layer) {

@@ -15,8 +15,10 @@
 
 namespace roadfix {
 
-/// Throws as that of coordinate_limits.hpp: no projected reference system has its roads within 360 m of its origin.
-void refuse_degrees_as_metres(VectorFile& file, const RoadLayer& layer);
+/// Throws InvalidInput "degrees-as-metres" (no projected reference system has its roads within 360 m of its origin) and
+/// "axes-swapped".
+void require_likely_coordinates(const OGREnvelope& box, const OGRSpatialReference& crs, const std::string& path);
+void require_likely_coordinates(VectorFile& file, const RoadLayer& layer);
 
 /// Throws InvalidInput "crs-not-transformable" where most lines have coordinates of no place on Earth, which is more
 /// than an accident.

@@ -134,7 +134,7 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   for (OGRLayer* of : file.layers()) {
     const RoadLayer& layer = layers.at(of);
     refuse_as_nowhere(file, layer);
-    refuse_degrees_as_metres(file, layer);
+    require_likely_coordinates(file, layer);
     add_layer(layer, rules, path, parts);
     add_datum_error(datum_error_of(file, layer, zone), parts.of(layer).network);
     if (options.extent.empty()) add_ground(file, layer, zone, parts);
@@ -190,7 +190,7 @@ std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path, 
     if (may_hold_lines(*layer) != of_lines) continue;
     const std::optional<OGREnvelope> box = file.extent_of(*layer);
     if (!box) continue;
-    refuse_degrees_as_metres(*box, file.crs_of(*layer), path);
+    require_likely_coordinates(*box, file.crs_of(*layer), path);
     return centre_on_earth(*box, file.crs_of(*layer), path, "give the right one with --crs");
   }
   return std::nullopt;

@@ -120,5 +120,19 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   }
 }
 
+TEST_F(GeoreferenceTest, SwappedEastingAndNorthingAreRefused) {
+  const auto code_where = [&](int epsg, double east_m, double north_m) {
+    const std::array<double, 6> transform{east_m, 0.5, 0, north_m, 0, -0.5};
+    const std::string path = write_raster(folder / "a.tif", {.epsg = epsg, .transform = transform}, grey);
+    return code_of([&] { centre_of(RasterFile(path, {})); });
+  };
+  EXPECT_EQ(code_where(32637, 4'200'000, 400'000), "axes-swapped");
+  EXPECT_EQ(code_where(32637, 400'000, 4'200'000), "no error");
+  EXPECT_EQ(code_where(32637, 1'400'000, 4'200'000), "no error") << "beyond the rim of a zone";
+  EXPECT_EQ(code_where(32760, 8'200'000, 250'000), "axes-swapped") << "a zone that ends at the 180th meridian";
+  EXPECT_EQ(code_where(31467, 5'500'000, 3'500'000), "axes-swapped");
+  EXPECT_EQ(code_where(3857, 4'600'000, 4'250'000), "no error") << "a system for the whole Earth";
+}
+
 }  // namespace
 }  // namespace roadfix

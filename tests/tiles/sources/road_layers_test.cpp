@@ -86,6 +86,15 @@ TEST_F(RoadLayers, OfDegreesThatAreDeclaredAsMetresAreRefused) {
   }
 }
 
+TEST_F(RoadLayers, WithEastingAndNorthingSwappedAreRefused) {
+  const std::string path = geojson({R"({"type":"Feature","properties":{},"geometry":{"type":"LineString",)"
+                                    R"("coordinates":[[4200000,400000],[4200100,400100]]}})"});
+  VectorOptions options;
+  options.crs = "EPSG:32637";
+  EXPECT_EQ(code_of([&] { centre_of_roads({path}, options); }), "axes-swapped");
+  EXPECT_EQ(code_of([&] { read_road_network({path}, options, RoadRules(), kZone); }), "axes-swapped");
+}
+
 TEST_F(RoadLayers, OfAShapefileMayHaveTheirReferenceSystemInWkt2) {
   require_gdal();
   const std::string path = (folder / "roads.shp").string();

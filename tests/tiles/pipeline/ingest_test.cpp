@@ -100,6 +100,14 @@ TEST_F(IngestTest, PlansNoGroundWithoutLatitudeAndLongitude) {
   EXPECT_EQ(testing::code_of([&] { plan_blocks(source, "noise", kSettings); }), "source-outside-map");
 }
 
+TEST_F(IngestTest, PlansNoMoreThanAMillionBlocksAndSaysHowLargeTheSourceIs) {
+  NoiseSource source;
+  source.set_extent({{400000.0, 4200000.0}, {500000.0, 4364000.0}});
+  const MapSettings fine{kSettings.zone, 0.5};
+  EXPECT_THAT(testing::message_of([&] { plan_blocks(source, "noise", fine); }),
+              ::testing::HasSubstr("'noise' covers 100 x 164 km, more than a million blocks of 128 m"));
+}
+
 TEST_F(IngestTest, CarriesEveryCellIntoTheMap) {
   const NoiseSource source;
   const IngestReport report = run(source, "a.gpkg", 2);

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <random>
 #include <set>
 #include <string>
+#include <thread>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -32,6 +34,7 @@ class NoiseSource final : public CellSource {
     const std::int64_t reads = ++reads_;
     if (reads == fail_at_) throw CorruptData("image-unreadable-block", "a.tif: damaged");
     if (reads == stop_at_) stop_.request_stop();
+    std::this_thread::sleep_for(time_);
     std::mt19937_64 random(seed);
     CellArray cells(block.cols, block.rows);
     for (int row = 0; row < block.rows; ++row) {
@@ -43,6 +46,7 @@ class NoiseSource final : public CellSource {
     return cells;
   }
   void set_extent(GridBox extent) { extent_ = extent; }
+  void take(std::chrono::milliseconds time) { time_ = time; }
   void fail_at(std::int64_t read) { fail_at_ = read; }
   void stop_at(std::int64_t read) { stop_at_ = read; }
   std::stop_token stop() { return stop_.get_token(); }
@@ -50,6 +54,7 @@ class NoiseSource final : public CellSource {
 
  private:
   GridBox extent_{{400100.0, 4200100.0}, {402900.0, 4202300.0}};
+  std::chrono::milliseconds time_{0};  ///< for each block
   mutable std::atomic<std::int64_t> reads_ = 0;
   std::int64_t fail_at_ = -1;
   std::int64_t stop_at_ = -1;
@@ -159,6 +164,7 @@ TEST_F(IngestTest, ADamagedBlockIsReportedAndNothingHalfDoneCounts) {
   } catch (const CorruptData& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("a.tif"));
   }
+  EXPECT_LE(damaged.reads(), 9 + 4) << "more than the blocks in flight";
   EXPECT_FALSE(MapReader(folder / "parts.gpkg").info().sources.front().complete);
   const IngestReport report = run(NoiseSource(), "parts.gpkg", 2);
   EXPECT_EQ(report.blocks_before, damaged.reads() - 1) << "what could be read beside the damaged block is kept";
@@ -184,6 +190,19 @@ TEST_F(IngestTest, SaysHowFarItIs) {
   ASSERT_EQ(std::ssize(seen), blocks + 1);
   EXPECT_TRUE(std::ranges::is_sorted(seen));
   EXPECT_EQ(seen.back(), blocks);
+}
+
+TEST_F(IngestTest, WritesBlocksWhileItReadsOthers) {
+  NoiseSource slow;
+  slow.take(std::chrono::milliseconds(15));
+  MapWriter writer(folder / "a.gpkg", kSettings);
+  std::int64_t read_before_first = 0;
+  const auto note = [&](std::int64_t done, std::int64_t) {
+    if (done == 1) read_before_first = slow.reads();
+  };
+  const IngestReport report = ingest(slow, record(), writer, {.jobs = 1, .seed = 5, .on_blocks = note});
+  EXPECT_GT(read_before_first, 0);
+  EXPECT_LT(read_before_first, report.blocks) << "one that is killed loses all of them";
 }
 
 TEST(BlockSeed, DiffersBetweenBlocksAndRuns) {

@@ -59,19 +59,35 @@ const char* surface_tag(Surface surface) {
   return nullptr;
 }
 
-ordered_json feature_of(const Street& street, const Polyline& line, const Placement& placement) {
+ordered_json position_of(LatLon at) {
   constexpr double kPerDegree = 1e8;  // to a millimetre
-  ordered_json coordinates = ordered_json::array();
+  return {std::round(kPerDegree * at.lon_deg) / kPerDegree, std::round(kPerDegree * at.lat_deg) / kPerDegree};
+}
+
+/// A LineString; cut into several where it crosses the 180th meridian (RFC 7946, section 3.1.9).
+ordered_json geometry_of(const Polyline& line, const Placement& placement) {
+  ordered_json parts = ordered_json::array({ordered_json::array()});
+  std::optional<LatLon> before;
   for (const PlanPoint& p : line) {
     const LatLon at = placement.zone.unproject(placement.point_of(p.x / placement.gsd_m, p.y / placement.gsd_m));
-    coordinates.push_back({std::round(kPerDegree * at.lon_deg) / kPerDegree,  //
-                           std::round(kPerDegree * at.lat_deg) / kPerDegree});
+    if (before && std::abs(at.lon_deg - before->lon_deg) > 180.0) {
+      const double end = std::copysign(180.0, before->lon_deg);
+      const double share = (end - before->lon_deg) / (at.lon_deg + 2.0 * end - before->lon_deg);
+      const double lat = std::lerp(before->lat_deg, at.lat_deg, share);
+      parts.back().push_back(position_of({lat, end}));
+      parts.push_back(ordered_json::array({position_of({lat, -end})}));
+    }
+    parts.back().push_back(position_of(at));
+    before = at;
   }
+  if (parts.size() == 1) return {{"type", "LineString"}, {"coordinates", parts.front()}};
+  return {{"type", "MultiLineString"}, {"coordinates", std::move(parts)}};
+}
+
+ordered_json feature_of(const Street& street, const Polyline& line, const Placement& placement) {
   ordered_json properties{{"highway", street.road_class}, {"width_m", street.width_m}};
   if (const char* surface = surface_tag(street.surface)) properties["surface"] = surface;
-  return {{"type", "Feature"},
-          {"properties", std::move(properties)},
-          {"geometry", {{"type", "LineString"}, {"coordinates", std::move(coordinates)}}}};
+  return {{"type", "Feature"}, {"properties", std::move(properties)}, {"geometry", geometry_of(line, placement)}};
 }
 
 }  // namespace

@@ -3,6 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "core/units/file.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::world {
 namespace {
@@ -26,6 +30,27 @@ TEST(RoadTruth, LeavesLinesWithinThePictureWhole) {
   const auto parts = clipped(line, 20, 10);
   ASSERT_EQ(parts.size(), 1U);
   EXPECT_EQ(parts[0], line);
+}
+
+TEST(RoadTruth, CutsLinesAtThe180thMeridian) {
+  const UtmZone zone = UtmZone::containing({-17.0, 179.9999});
+  const GridPoint meridian = zone.project({-17.0, 180.0});
+  const roadfix::testing::TemporaryFolder folder;
+  const std::string file = (folder / "roads.geojson").string();
+  const Street street{.road_class = "residential", .line = {{0, 10}, {100, 10}, {100, 20}, {0, 20}}};
+  write_road_truth(file, {street}, {zone, 1.0, 200, 100, {meridian.east_m - 50.0, meridian.north_m}});
+  const nlohmann::json geometry = nlohmann::json::parse(read_named_file(file)).at("features").at(0).at("geometry");
+  EXPECT_EQ(geometry.at("type"), "MultiLineString");
+  const nlohmann::json& parts = geometry.at("coordinates");
+  ASSERT_EQ(parts.size(), 3U);
+  EXPECT_EQ(parts[0].back()[0], 180.0);
+  EXPECT_EQ(parts[1].front()[0], -180.0);
+  EXPECT_EQ(parts[1].back()[0], -180.0);
+  EXPECT_EQ(parts[2].front()[0], 180.0);
+  EXPECT_NEAR(zone.project({parts[0].back()[1], 180.0}).north_m, meridian.north_m - 10.0, 0.1);
+  for (const nlohmann::json& part : parts) {
+    for (const nlohmann::json& position : part) EXPECT_EQ(std::signbit(position[0].get<double>()), &part == &parts[1]);
+  }
 }
 
 TEST(RoadTruth, LeavesOutLinesThatPassThePictureBy) {

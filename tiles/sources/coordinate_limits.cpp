@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -35,14 +34,17 @@ class CornersHeld final : public OGRDefaultConstGeometryVisitor {
   bool all_ = true;
 };
 
-/// In degrees, its east beyond its west. Of zones that a .prj file describes, too, whose WKT has no codes.
+/// In degrees, its east beyond its west. Of those that the WKT of a .prj file describes, without codes, of UTM zones
+/// only.
 std::optional<OGREnvelope> area_of_use(const OGRSpatialReference& crs) {
-  OGRSpatialReference known = crs;
-  if (crs.GetAuthorityCode(nullptr) == nullptr && known.AutoIdentifyEPSG() == OGRERR_NONE) {
-    known.importFromEPSG(std::atoi(known.GetAuthorityCode(nullptr)));
-  }
   OGREnvelope area;
-  if (!known.GetAreaOfUse(&area.MinX, &area.MinY, &area.MaxX, &area.MaxY, nullptr)) return std::nullopt;
+  if (!crs.GetAreaOfUse(&area.MinX, &area.MinY, &area.MaxX, &area.MaxY, nullptr)) {
+    int northern = FALSE;
+    const int zone = crs.GetUTMZone(&northern);
+    if (zone == 0) return std::nullopt;
+    area.Merge(6 * zone - 186, northern != FALSE ? 0.0 : -80.0);
+    area.Merge(6 * zone - 180, northern != FALSE ? 84.0 : 0.0);
+  }
   if (area.MaxX < area.MinX) area.MaxX += 360.0;
   return area;
 }

@@ -118,6 +118,8 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
     CPLFree(text);
     EXPECT_TRUE(RasterFile(path, {}).crs().IsSame(&utm)) << format;
   }
+  std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n4200127\n400001\n";
+  EXPECT_EQ(code_of([&] { centre_of(RasterFile(path, {})); }), "axes-swapped") << "its WKT has no codes";
 }
 
 TEST_F(GeoreferenceTest, SwappedEastingAndNorthingAreRefused) {

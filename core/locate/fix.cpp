@@ -9,6 +9,7 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/footprint_refusal.hpp"
+#include "core/locate/frame_halves.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/prepare.hpp"
@@ -36,12 +37,10 @@ FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchM
 
 /// If the offsets between frames are wrong, the frames that agree with each other are located, but the position asked
 /// for is that of another one. A frame that shows hardly any road contradicts nothing.
-bool contradicts(const MapView& map, const FeatureMap& own_frame, const SearchMode& best, double rho_of_all) {
+bool contradicts(const MapView& map, const FeatureMap& own_frame, const GridPose& pose, double rho_of_all) {
   constexpr double kLeastShare = 0.5;
-  const FeatureMap cells = in_cells_of(map, own_frame);
-  if (refusal_of(cells) || shows_less_than_a_road_across(cells)) return false;
-  const auto rho = rho_at(map, resampled(cells, cells.cell_m, best.scale), best.pose);
-  return rho.value_or(0.0) < kLeastShare * rho_of_all;
+  if (refusal_of(own_frame) || shows_less_than_a_road_across(own_frame)) return false;
+  return rho_at(map, own_frame, pose).value_or(0.0) < kLeastShare * rho_of_all;
 }
 
 // A place of no more probability is not claimed, whatever the status.
@@ -52,14 +51,30 @@ bool claims_a_place(const Fix& fix) {
   return fix.status == FixStatus::kFix || likely;
 }
 
-void refuse_contradicting_frames(Fix& fix) {
+void refuse(Fix& fix, const char* reason, std::string explanation) {
   fix.status = FixStatus::kNoFix;
-  fix.reason = "frames-contradict";
-  fix.explanation =
-      "the frames fit at one place together, but the one whose position is asked for does not fit there by itself: "
-      "check where the others were taken from, and that no frame or movement comes late";
+  fix.reason = reason;
+  fix.explanation = std::move(explanation);
   fix.probability = std::min(fix.probability, kMostProbable);
   fix.modes.front().weight = fix.probability;
+}
+
+/// Refuses a likely place where the frame that is asked for, or a half of it, does not fit by itself.
+void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const std::optional<FeatureMap>& own_frame,
+             const SearchMode& best) {
+  const FeatureMap asked_for = own_frame ? in_cells_of(map, *own_frame) : cells;
+  const FeatureMap frame = resampled(asked_for, asked_for.cell_m, best.scale);
+  if (own_frame && contradicts(map, frame, best.pose, fix.modes.front().rho)) {
+    refuse(fix, "frames-contradict",
+           "the frames fit at one place together, but the one whose position is asked for does not fit there by "
+           "itself: check where the others were taken from, and that no frame or movement comes late");
+  } else if (const char* half = contradicting_half(map, frame, best.pose)) {
+    refuse(fix, "halves-contradict",
+           fmt::format("the roads fit best at one place, but the {} half of the frame does not fit there by itself: "
+                       "part of the picture may be older than the rest, or not of the ground; leave out frames that "
+                       "the decoder reports as damaged, and paint black what covers the ground",
+                       half));
+  }
 }
 
 SearchOptions search_options_of(const FixOptions& options, const MapView& map) {
@@ -127,10 +142,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
-  if (claims_a_place(fix) && options.own_frame &&
-      contradicts(map, *options.own_frame, found.modes.front(), fix.modes.front().rho)) {
-    refuse_contradicting_frames(fix);
-  }
+  if (claims_a_place(fix)) confirm(fix, map, cells, options.own_frame, found.modes.front());
   fix.searched_km2 = region.area_km2();
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;

@@ -28,20 +28,6 @@ void for_each_on_map(const MapView& map, const FeatureMap& features, std::span<c
   }
 }
 
-MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose) {
-  const LatticeIndex cell = lattice_index(pose.position, features.cell_m);
-  const PackedFootprint footprint = footprint_at(features, pose.heading,
-                                                 {pose.position.east_m / features.cell_m - cell.col - 0.5,
-                                                  -pose.position.north_m / features.cell_m - cell.row - 0.5});
-  const int reach = footprint.reach();
-  const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
-  const MapPlane plane(map.read(window).cells);
-  const PlaneCell middle{reach, reach};
-  MatchSums sums;
-  match_sums(plane, footprint, std::span(&middle, 1), std::span(&sums, 1));
-  return sums;
-}
-
 void match_exactly(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                    const MatchOptions& options, std::span<MatchSums> sums) {
   std::vector<std::pair<std::size_t, GridPose>> on_map;
@@ -83,6 +69,20 @@ std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, st
   scores.reserve(sums.size());
   for (const MatchSums& s : sums) scores.push_back({rho(s), s.n});
   return scores;
+}
+
+MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose) {
+  const LatticeIndex cell = lattice_index(pose.position, features.cell_m);
+  const PackedFootprint footprint = footprint_at(features, pose.heading,
+                                                 {pose.position.east_m / features.cell_m - cell.col - 0.5,
+                                                  -pose.position.north_m / features.cell_m - cell.row - 0.5});
+  const int reach = footprint.reach();
+  const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
+  const MapPlane plane(map.read(window).cells);
+  const PlaneCell middle{reach, reach};
+  MatchSums sums;
+  match_sums(plane, footprint, std::span(&middle, 1), std::span(&sums, 1));
+  return sums;
 }
 
 std::optional<double> rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose) {

@@ -26,8 +26,10 @@ struct MatchOptions {
 std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, std::span<const GeoPose> poses,
                               const MatchOptions& options = {});
 
-/// Equation (5) at one pose, exactly; nullopt where it is not defined. `features` are in cells of the map or of an
-/// overview (see in_cells_of()).
+/// What equation (5) and other correlations follow from at one pose, exactly. `features` are in cells of the map or of
+/// an overview (see in_cells_of()).
+MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose);
+/// Equation (5) of that; nullopt where it is not defined.
 std::optional<double> rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose);
 
 }  // namespace roadfix

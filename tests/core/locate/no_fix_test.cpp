@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -253,6 +254,32 @@ TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
     EXPECT_LE(refused.probability, 0.5);
     EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
   }
+}
+
+TEST_F(NoFix, RefusesAFrameOfWhichAHalfIsOlderThanTheOther) {
+  const auto lower_half_of = [](const FeatureMap& from, FeatureMap frame) {
+    for (int row = frame.cells.rows() / 2; row < frame.cells.rows(); ++row) {
+      std::ranges::copy(from.cells.row(row), frame.cells.row(row).begin());
+    }
+    return frame;
+  };
+  int refused = 0;
+  for (int i = 0; i < 6; ++i) {
+    const GridPose truth = pose_within(view_.extent, 400.0, random_);
+    const auto seen_from = [&](double ahead_m) {
+      return observed_at(map_, moved(truth, {ahead_m, 0.0, {}}), 160, 160, 2.0, {0.1, 0.1}, random_);
+    };
+    const FeatureMap frame = seen_from(0.0);
+    if (locate(view_, frame, {}, {}).status != FixStatus::kFix) continue;
+    const Fix torn = locate(view_, lower_half_of(seen_from(-80.0), frame), {}, {});
+    EXPECT_NE(torn.status, FixStatus::kFix) << "off by " << error_m(torn.modes.at(0).pose, truth);
+    if (torn.reason != "halves-contradict") continue;
+    ++refused;
+    EXPECT_EQ(torn.status, FixStatus::kNoFix);
+    EXPECT_LE(torn.probability, 0.5);
+    EXPECT_EQ(torn.modes.at(0).weight, torn.probability);
+  }
+  EXPECT_GT(refused, 0) << "each of the others fits nowhere beyond chance";
 }
 
 }  // namespace

@@ -1,0 +1,131 @@
+#include "core/locate/frame_halves.hpp"
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <string_view>
+
+#include "tests/support/ascii_map.hpp"
+#include "tests/support/map_view.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::from_ascii;
+
+// In cells of 5 m, so that a half is 7200 m2.
+constexpr int kSide = 24;
+constexpr std::string_view kTown = R"(
+  ....#.............#.....
+  ....#.............#.....
+  ....#.............#.....
+  ########..........#.....
+  ....#..##.........#.....
+  ....#...##........#.....
+  ....#....###############
+  ....#.....##............
+  ....#......##...........
+  ....#.......#...........
+  ....#.......#...........
+  ....#.......#######.....
+  ....#.......#.....##....
+  #####.......#......##...
+  ....#.......#.......####
+  ....#.......#...........
+  ....#....####...........
+  ....#....#..............
+  ....#....#..............
+  ....######..............
+  ....#....##.............
+  ....#.....##............
+  ....#......#############
+  ....#......#............)";
+constexpr std::string_view kElsewhere = R"(
+  ..........#..........#..
+  ..........#..........#..
+  ..........#..........#..
+  ..........#......#####..
+  ..........#......#......
+  #########.#......#......
+  ........#.########......
+  ........#........#......
+  ........#........#......
+  ........##########......
+  ........#........#......
+  ........#........#......
+  ........#........#......
+  ........#........###....
+  #########..........#....
+  ........#..........#....
+  ........#..........#####
+  ........#...............
+  .....####...............
+  .....#..................
+  .....#...........#######
+  .....#...........#......
+  .....#############......
+  .....#...........#......)";
+
+class FrameHalves : public ::testing::Test {
+ protected:
+  RoadGrid map_{{5.0, {120'000, -1'280'000}, kSide, kSide}, from_ascii(kTown)};
+  CellArray frame_ = from_ascii(kTown);
+  const CellArray elsewhere_ = from_ascii(kElsewhere);
+
+  /// Of the frame above the middle of the map, north up; "none" where no half contradicts.
+  std::string contradicting() const {
+    const GridPose pose{map_.geometry.box().centre(), Angle()};
+    const char* half = contradicting_half(testing::view_of(map_), FeatureMap::centred(frame_, 5.0), pose);
+    return half ? half : "none";
+  }
+};
+
+/// In the rectangle of the second, the cells of the first.
+void show(const CellArray& from, CellArray& in, int first_col, int first_row, int cols, int rows) {
+  for (int row = first_row; row < first_row + rows; ++row) {
+    for (int col = first_col; col < first_col + cols; ++col) in.at(col, row) = from.at(col, row);
+  }
+}
+
+TEST_F(FrameHalves, AllFitWhereTheFrameShowsTheGround) { EXPECT_EQ(contradicting(), "none"); }
+
+TEST_F(FrameHalves, ContradictWhereOneShowsOtherGround) {
+  constexpr int kHalf = kSide / 2;
+  const CellArray town = frame_;
+  show(elsewhere_, frame_, 0, 0, kHalf, kSide);
+  EXPECT_EQ(contradicting(), "left");
+  frame_ = town;
+  show(elsewhere_, frame_, kHalf, 0, kHalf, kSide);
+  EXPECT_EQ(contradicting(), "right");
+  frame_ = town;
+  show(elsewhere_, frame_, 0, 0, kSide, kHalf);
+  EXPECT_EQ(contradicting(), "upper");
+  frame_ = town;
+  show(elsewhere_, frame_, 0, kHalf, kSide, kHalf);
+  EXPECT_EQ(contradicting(), "lower");
+}
+
+TEST_F(FrameHalves, AreThoseOfTheCellsThatWereObserved) {
+  show(elsewhere_, frame_, 0, 0, kSide, 9);
+  show(CellArray(kSide, kSide), frame_, 0, 18, kSide, 6);
+  EXPECT_EQ(contradicting(), "upper");
+}
+
+TEST_F(FrameHalves, ContradictNothingWhereTheFrameShowsTooLittleRoadInOne) {
+  CellArray hidden(kSide, kSide, kNoRoad);
+  hidden.at(20, 2) = kRoad;  // a speck that the map does not have
+  show(hidden, frame_, kSide / 2, 0, kSide / 2, kSide);
+  EXPECT_EQ(contradicting(), "none");
+}
+
+TEST_F(FrameHalves, ContradictNothingWhereTheMapShowsTooLittleInOne) {
+  show(elsewhere_, frame_, kSide / 2, 0, kSide / 2, kSide);
+  ASSERT_EQ(contradicting(), "right");
+  for (const Cell cell : {kNoRoad, kUnobserved}) {
+    show(CellArray(kSide, kSide, cell), map_.cells, kSide / 2, 0, kSide / 2, kSide);
+    EXPECT_EQ(contradicting(), "none");
+  }
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -24,7 +24,7 @@ class TrackSearch {
   /// Whether the best place of `fix`, found for `features`, has no rival even if the scale of `features` is wrong:
   /// within `prior` or, if that takes more than half of the remaining time, within kAroundM of the place. From a wrong
   /// altitude the streets of one quarter look like those of another with smaller blocks, and no later frame contradicts
-  /// that.
+  /// that. The place itself at another scale is a rival, too: matched at a wrong one, it is less accurate than stated.
   bool holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const;
 
   /// Radius of the circle that is searched where the whole map is too large, or takes too long.

@@ -74,6 +74,26 @@ TEST_F(Track, ClaimsNoPlaceWhoseStreetsLookThatWayFromAWrongAltitudeOnly) {
   EXPECT_GT(searched, 0);
 }
 
+TEST_F(Track, TakesAPlaceForARivalOfItselfWhereItFitsFarBetterAtAnotherSizeOfTheGround) {
+  const TrackSettings exact = settings();
+  const StepLimits unlimited;
+  const TrackSearch searches(view_, exact, unlimited);
+  Flight flight(map_, start_, 6);
+  flight.side_cells = 160;
+  const FeatureMap seen = *flight.step().features;
+  const auto holds = [&](double told_size) {
+    FeatureMap told = seen;
+    told.cell_m *= told_size;
+    const Fix fix = searches.find(told, {}, {}).value();
+    EXPECT_LT(distance_m(view_.zone.project(fix.modes.at(0).pose.position), start_.position), 25.0) << told_size;
+    return searches.holds_at_other_scales(fix, told, {});
+  };
+  EXPECT_TRUE(holds(1.0));
+  EXPECT_TRUE(holds(1.03));
+  EXPECT_FALSE(holds(1.08));
+  EXPECT_FALSE(holds(1.0 / 1.08));
+}
+
 TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
   Flight flight(map_, start_, 1);
   flight.side_cells = 160;

@@ -108,6 +108,16 @@ TEST_F(Track, ClaimsNoHeadingThatOneWrongTurnTold) {
   EXPECT_GE(claims, 4) << "of 16";
 }
 
+TEST_F(Track, GoesWhereALookFindsTheVehicleBesideItsPlace) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 5);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  for (double& east_m : state_.filter.particles.east_m) east_m += 40.0;
+  const TrackEstimate estimate = advance(tracker, flight.step());
+  EXPECT_LT(error_m(estimate, flight.pose()), 15.0);
+  EXPECT_FALSE(estimate.converged) << "before it is borne out there";
+}
+
 TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
   Calibration doubts = *shipped_calibration();
   doubts.highest = 0.45;

@@ -178,6 +178,15 @@ TEST_F(Track, GoesOnWhereTheTimeDoesNotSufficeForASearch) {
   EXPECT_EQ(state_.last.value().sequence, late.sequence);
 }
 
+TEST_F(Track, StartsBySearchWithinTheTimeThatItHas) {
+  Flight flight(map_, start_, 1);
+  flight.side_cells = 160;
+  StepLimits limits;
+  limits.deadline = Deadline({}, std::chrono::steady_clock::now() + std::chrono::minutes(10));
+  const StepResult result = Tracker(view_, settings()).advance({}, flight.step(), limits);
+  EXPECT_EQ(result.estimate.measurement, Measurement::kSearched);
+}
+
 TEST_F(Track, NoticesAKidnappingAndRecovers) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);

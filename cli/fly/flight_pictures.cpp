@@ -16,7 +16,7 @@ constexpr std::size_t kParticles = 3000;
 
 std::string caption_of(const std::string& filter, const Record& record) {
   return fmt::format("step {}   {}   error {:.0f} m   {}   {} particles, {} clusters", record.sequence, filter,
-                     record.error_m, record.estimate.converged ? "converged" : "searching", record.estimate.particles,
+                     record.error_m, record.estimate.converged() ? "converged" : "searching", record.estimate.particles,
                      record.estimate.cluster_count);
 }
 

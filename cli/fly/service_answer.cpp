@@ -1,6 +1,8 @@
 #include "cli/fly/service_answer.hpp"
 
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
 
 #include "core/units/error.hpp"
 
@@ -33,6 +35,14 @@ Measurement measurement_of(const std::string& word) {
   throw unreadable("measurement " + word);
 }
 
+std::optional<Unclaimed> unclaimed_by(const json& answer) {
+  if (answer.at("status") == "converged") return std::nullopt;
+  const std::string& word = answer.at("reason").get_ref<const std::string&>();
+  const std::optional<Unclaimed> why = value_of(kUnclaimed, word);
+  if (!why) throw unreadable("reason " + word);
+  return why;
+}
+
 }  // namespace
 
 TrackEstimate estimate_of(const json& answer) {
@@ -40,7 +50,7 @@ TrackEstimate estimate_of(const json& answer) {
   try {
     estimate.sequence = answer.at("sequence");
     estimate.time_us = answer.at("time_us");
-    estimate.converged = answer.at("status") == "converged";
+    estimate.unclaimed = unclaimed_by(answer);
     for (const json& cluster : answer.at("clusters")) estimate.clusters.push_back(cluster_of(cluster));
     estimate.cluster_count = answer.at("cluster_count");
     estimate.particles = answer.at("particles");

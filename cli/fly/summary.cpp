@@ -33,7 +33,7 @@ void add_claims(std::span<const Record> records, Summary& summary, Samples& samp
   bool claimed = false;
   for (std::size_t i = 0; i < records.size(); ++i) {
     const Record& record = records[i];
-    if (!record.estimate.converged) continue;
+    if (!record.estimate.converged()) continue;
     if (!claimed) {
       ++summary.claimed_runs;
       samples.claim_updates.push_back(frames_until(records, i));
@@ -68,9 +68,9 @@ void add_event(std::span<const Record> records, const Events& events, Summary& s
     ++summary.recovered;
     samples.recovery_s.push_back(records[*found].time_s - at_s);
   }
-  if (!events.kidnapping || !records[first - 1].estimate.converged) return;
+  if (!events.kidnapping || !records[first - 1].estimate.converged()) return;
   const auto withdrawn =
-      std::ranges::find_if(records.subspan(first), [](const Record& r) { return !r.estimate.converged; });
+      std::ranges::find_if(records.subspan(first), [](const Record& r) { return !r.estimate.converged(); });
   if (withdrawn != records.end()) samples.withdrawal_s.push_back(withdrawn->time_s - at_s);
 }
 

@@ -12,7 +12,7 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   TrackEstimate estimate;
   estimate.sequence = state.last->sequence;
   estimate.time_us = state.last->time_us;
-  estimate.converged = outcome.converged;
+  estimate.unclaimed = outcome.unclaimed;
   estimate.cluster_count = clusters.size();
   const double nadir_sigma_m = tracker.settings().vehicle.nadir_sigma_m.value_or(state.nadir_sigma_m);
   for (std::size_t i = 0; i < std::min(clusters.size(), TrackEstimate::kMaxClusters); ++i) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 
 #include "core/filter/clusters.hpp"
@@ -15,7 +16,7 @@ struct StepOutcome {
   Measurement measurement = Measurement::kNone;
   double mean_likelihood = 0.0;  ///< see TrackEstimate
   std::int64_t missed_steps = 0;
-  bool converged = false;
+  std::optional<Unclaimed> unclaimed = Unclaimed::kTooFewAgree;
 };
 
 /// `state` after the step but for its filter, which is `filter`; `clusters` of its particles.

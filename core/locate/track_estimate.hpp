@@ -1,6 +1,7 @@
 // Where a track takes the vehicle to be after a step, and what became of what the step showed.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -8,6 +9,7 @@
 
 #include "core/geodesy/geo_pose.hpp"
 #include "core/locate/ellipse.hpp"
+#include "core/units/words.hpp"
 
 namespace roadfix {
 
@@ -26,14 +28,41 @@ enum class Measurement { kNone, kSearched, kAccepted, kRejected, kUseless, kRepe
 /// "none", "searched" ...: the word for it in answers and files.
 const char* to_string(Measurement measurement);
 
+/// Why a step claims no place: the first condition of a claim that does not hold (docs/tracks.md, "When a place is
+/// claimed").
+enum class Unclaimed {
+  kFrameRepeated,  ///< or the camera stands still
+  kFrameRejected,
+  kSeveralPlaces,
+  kPlaceTooWide,
+  kTooFewAgree,
+  kNoneAgreedLately,
+  kFramesAgreeLess,
+  kMayBeChance,
+  kOthersNotRuledOut,
+  kNotBorneOut,
+};
+inline constexpr std::array<Word<Unclaimed>, 10> kUnclaimed{{{"frame-repeated", Unclaimed::kFrameRepeated},
+                                                             {"frame-rejected", Unclaimed::kFrameRejected},
+                                                             {"several-places", Unclaimed::kSeveralPlaces},
+                                                             {"place-too-wide", Unclaimed::kPlaceTooWide},
+                                                             {"too-few-agree", Unclaimed::kTooFewAgree},
+                                                             {"none-agreed-lately", Unclaimed::kNoneAgreedLately},
+                                                             {"frames-agree-less", Unclaimed::kFramesAgreeLess},
+                                                             {"may-be-chance", Unclaimed::kMayBeChance},
+                                                             {"others-not-ruled-out", Unclaimed::kOthersNotRuledOut},
+                                                             {"not-borne-out", Unclaimed::kNotBorneOut}}};
+/// For a person, with what to do.
+const char* explanation_of(Unclaimed why);
+
 struct TrackEstimate {
   std::int64_t sequence = 0;
   std::int64_t time_us = 0;
-  bool converged = false;              ///< only then the first cluster is a position to fly on
-  std::vector<TrackCluster> clusters;  ///< heaviest first, at most kMaxClusters of them
-  std::size_t cluster_count = 0;       ///< of all, also those that are not among `clusters`
-  std::size_t particles = 0;           ///< number of them
-  std::uint64_t resets = 0;            ///< times that the belief was thrown away
+  std::optional<Unclaimed> unclaimed = Unclaimed::kTooFewAgree;  ///< nullopt = converged
+  std::vector<TrackCluster> clusters;                            ///< heaviest first, at most kMaxClusters of them
+  std::size_t cluster_count = 0;                                 ///< of all, also those that are not among `clusters`
+  std::size_t particles = 0;                                     ///< number of them
+  std::uint64_t resets = 0;                                      ///< times that the belief was thrown away
   Measurement measurement = Measurement::kNone;
   /// How many times likelier the measurement was under the belief before it than by chance, on average.
   double mean_likelihood = 0.0;
@@ -42,6 +71,9 @@ struct TrackEstimate {
   bool odometry_is_wrong = false;          ///< was found so, and a drift of it is learned
   std::int64_t missed_steps = 0;           ///< sequence numbers left out before this step
   static constexpr std::size_t kMaxClusters = 8;
+
+  /// Only then the first cluster is a position to fly on.
+  bool converged() const { return !unclaimed; }
 };
 
 }  // namespace roadfix

@@ -51,10 +51,10 @@ StepResult Tracker::Step::run() {
   state_.last = StepStamp{input_.sequence, input_.time_us};
   state_.motion = motion_.learned();
   const std::vector<Cluster> clusters = clusters_of(filter_.particles());
-  outcome_.converged = has_converged(settings_, state_, clusters.front(), outcome_.measurement, filter_.doubt());
+  outcome_.unclaimed = why_unclaimed(settings_, state_, clusters.front(), outcome_.measurement, filter_.doubt());
   // A claim that ended while nothing was seen does not come back when the particles happen to gather again.
-  if (saw_nothing() && !outcome_.converged) state_.claim.forget_look();
-  if (outcome_.converged) state_.recent.clear();
+  if (saw_nothing() && outcome_.unclaimed) state_.claim.forget_look();
+  if (!outcome_.unclaimed) state_.recent.clear();
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, clusters, outcome_);
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};

@@ -15,8 +15,8 @@ using nlohmann::json;
 
 json properties_of(const json& answer) {
   json properties = json::object();
-  for (const char* name : {"sequence", "time_us", "status", "sigma_m", "ellipse_heading_deg", "heading_sigma_deg",
-                           "radius95_m", "measurement", "doubt", "drifts", "resets", "made_by"}) {
+  for (const char* name : {"sequence", "time_us", "status", "reason", "sigma_m", "ellipse_heading_deg",
+                           "heading_sigma_deg", "radius95_m", "measurement", "doubt", "drifts", "resets", "made_by"}) {
     if (answer.contains(name)) properties[name] = answer.at(name);
   }
   const std::string date = date_of(answer.at("time_us"));

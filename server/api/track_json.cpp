@@ -28,8 +28,11 @@ json cluster_json(const TrackCluster& cluster) {
 json to_json(const TrackEstimate& estimate) {
   json answer{{"sequence", estimate.sequence},
               {"time_us", estimate.time_us},
-              {"status", estimate.converged ? "converged" : "searching"}};
-  if (estimate.converged) {
+              {"status", estimate.converged() ? "converged" : "searching"}};
+  if (estimate.unclaimed) {
+    answer["reason"] = word_of(kUnclaimed, *estimate.unclaimed);
+    answer["explanation"] = explanation_of(*estimate.unclaimed);
+  } else {
     answer.update(cluster_json(estimate.clusters.front()));
     answer["geometry"] = point_json(estimate.clusters.front().pose.position);
   }

@@ -141,7 +141,7 @@ export class Tracks {
         ['lat, lon', `${step.pose.lat.toFixed(6)}, ${step.pose.lon.toFixed(6)}`],
         ['heading, true', headingText(step.pose, step.heading_sigma_deg)],
       ] : []),
-      ['within, 95 %', step.pose ? `${step.radius95_m.toFixed(1)} m` : 'not sure of a place'],
+      step.pose ? ['within, 95 %', `${step.radius95_m.toFixed(1)} m`] : ['no place', step.explanation],
       ['map', chosen.track.map.name],
       ['step', String(step.sequence)],
       ['measurement', step.measurement],

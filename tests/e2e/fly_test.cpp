@@ -87,7 +87,7 @@ void expect_equal(const std::vector<fly::Run>& a, const std::vector<fly::Run>& b
       EXPECT_EQ(x.best.heading.radians(), y.best.heading.radians());
       EXPECT_EQ(x.nees, y.nees);
       EXPECT_EQ(x.estimate.measurement, y.estimate.measurement);
-      EXPECT_EQ(x.estimate.converged, y.estimate.converged);
+      EXPECT_EQ(x.estimate.converged(), y.estimate.converged());
       EXPECT_EQ(x.estimate.particles, y.estimate.particles);
     }
   }
@@ -181,7 +181,7 @@ TEST_F(Vehicles, LoseNothingWhenTheServiceIsKilledAmidTheirFlightsAndComesBack) 
     ASSERT_EQ(history.size(), flight.records.size()) << "an answered step was lost, or one was taken twice";
     for (std::size_t k = 0; k < history.size(); ++k) {
       EXPECT_EQ(history[k]["properties"]["sequence"], flight.records[k].sequence);
-      EXPECT_EQ(history[k]["properties"]["status"] == "converged", flight.records[k].estimate.converged);
+      EXPECT_EQ(history[k]["properties"]["status"] == "converged", flight.records[k].estimate.converged());
     }
   }
 }

@@ -17,7 +17,7 @@ TrackEstimate estimate() {
   TrackEstimate e;
   e.sequence = 7;
   e.time_us = 8'000'001;
-  e.converged = true;
+  e.unclaimed.reset();
   e.clusters = {{{{37.7612345678, 38.2712345678}, Angle::degrees(211.5)},
                  0.9375,
                  {{4.25, 3.5}, Angle::degrees(17.0)},
@@ -53,6 +53,19 @@ TEST(ServiceAnswers, AreReadBackAsTheyWereWritten) {
   EXPECT_NEAR(particles[1].heading.degrees(), 180.0, 1e-9);
 }
 
+TEST(ServiceAnswers, SayWhyNoPlaceIsClaimed) {
+  for (const auto& [word, why] : kUnclaimed) {
+    TrackEstimate searching = estimate();
+    searching.unclaimed = why;
+    const json answer = api::to_json(searching);
+    EXPECT_EQ(answer["status"], "searching");
+    EXPECT_EQ(answer["reason"], word);
+    EXPECT_EQ(answer["explanation"], explanation_of(why));
+    EXPECT_EQ(estimate_of(answer).unclaimed, why);
+  }
+  EXPECT_FALSE(api::to_json(estimate()).contains("reason"));
+}
+
 TEST(ServiceAnswers, OfAnotherProgramAreRefused) {
   const auto refusal = [](const json& answer) { return code_of([&] { estimate_of(answer); }); };
   const json good = api::to_json(estimate());
@@ -66,6 +79,11 @@ TEST(ServiceAnswers, OfAnotherProgramAreRefused) {
   }
   json bad = good;
   bad["measurement"] = "guessed";
+  EXPECT_EQ(refusal(bad), "service-answer-unreadable");
+  bad = good;
+  bad["status"] = "searching";
+  EXPECT_EQ(refusal(bad), "service-answer-unreadable") << "no reason";
+  bad["reason"] = "tired";
   EXPECT_EQ(refusal(bad), "service-answer-unreadable");
   bad = good;
   bad["clusters"] = json::array();

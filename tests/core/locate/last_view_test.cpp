@@ -143,7 +143,7 @@ TEST(LastView, IsNotComparedWhereTheOdometryDoesNotTellTheMotionOverTheGround) {
 TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
   const StepInput last = flight.step();
   advance(tracker, last);
   for (int i = 0; i < 15; ++i) {
@@ -151,7 +151,7 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
     step.features = last.features;
     const TrackEstimate estimate = advance(tracker, step);
     EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
-    EXPECT_FALSE(estimate.converged) << "step " << i;
+    EXPECT_FALSE(estimate.converged()) << "step " << i;
     EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
     EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
   }
@@ -162,24 +162,24 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
 TEST_F(Track, ClaimsNoPlaceThatAMovementCountedTwiceHasLedTo) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
   for (int i = 0; i < 20; ++i) {
     StepInput step = flight.step();
     step.sequence = 10 + 2 * i;
     const auto claims_rightly = [&](const TrackEstimate& estimate) {
-      return !estimate.converged || error_m(estimate, flight.pose()) < 15.0;
+      return !estimate.converged() || error_m(estimate, flight.pose()) < 15.0;
     };
     EXPECT_TRUE(claims_rightly(advance(tracker, step))) << "step " << i;
     ++step.sequence;
     step.time_us += 300'000;
-    EXPECT_FALSE(advance(tracker, step).converged) << "step " << i;
+    EXPECT_FALSE(advance(tracker, step).converged()) << "step " << i;
   }
 }
 
 TEST_F(Track, ClaimsNothingWhereTheCameraHasStoppedThoughItsPicturesChangeByNoise) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
   const StepInput last = flight.step();
   advance(tracker, last);
   std::mt19937_64 random(7);
@@ -188,16 +188,16 @@ TEST_F(Track, ClaimsNothingWhereTheCameraHasStoppedThoughItsPicturesChangeByNois
     step.features = noisy(*last.features, 3, random);
     const TrackEstimate estimate = advance(tracker, step);
     EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
-    EXPECT_FALSE(estimate.converged) << "step " << i;
+    EXPECT_FALSE(estimate.converged()) << "step " << i;
     EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
   }
-  EXPECT_TRUE(fly(tracker, flight, 5).converged);
+  EXPECT_TRUE(fly(tracker, flight, 5).converged());
 }
 
 TEST_F(Track, IsHeldBackByAStoppedCameraForSomeCellsOnly) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
   flight.step_m = 3.0;
   const StepInput last = flight.step();
   advance(tracker, last);
@@ -208,7 +208,7 @@ TEST_F(Track, IsHeldBackByAStoppedCameraForSomeCellsOnly) {
     const TrackEstimate estimate = advance(tracker, step);
     EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
     // Three cells of 4 m since the view that the stopped one is compared with, and as many since the one before that.
-    EXPECT_TRUE(3.0 * i < 24.0 || !estimate.converged) << "step " << i;
+    EXPECT_TRUE(3.0 * i < 24.0 || !estimate.converged()) << "step " << i;
   }
 }
 

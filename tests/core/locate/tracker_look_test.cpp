@@ -37,8 +37,8 @@ class TrackOfAVehicleThatDrifts : public Track {
           {{pose.position.east_m + unfelt_m.east_m, pose.position.north_m + unfelt_m.north_m}, pose.heading});
       const TrackEstimate estimate = advance(tracker, flight.step());
       const double error = error_m(estimate, flight.pose());
-      outcome.claims += estimate.converged ? 1 : 0;
-      outcome.false_claims += estimate.converged && error > 25.0 ? 1 : 0;
+      outcome.claims += estimate.converged() ? 1 : 0;
+      outcome.false_claims += estimate.converged() && error > 25.0 ? 1 : 0;
       if (i >= steps / 2) outcome.largest_error_m = std::max(outcome.largest_error_m, error);
       outcome.odometry_is_wrong = estimate.odometry_is_wrong;
     }
@@ -79,8 +79,8 @@ TEST_F(Track, FollowsAVehicleWhoseOdometryTellsAThirdTooLittleOrTooMuch) {
       StepInput step = flight.step();
       if (step.odometry) step.odometry->forward_m *= factor;
       const TrackEstimate estimate = advance(tracker, step);
-      claims += estimate.converged ? 1 : 0;
-      EXPECT_FALSE(estimate.converged && error_m(estimate, flight.pose()) > 15.0) << factor << ", step " << i;
+      claims += estimate.converged() ? 1 : 0;
+      EXPECT_FALSE(estimate.converged() && error_m(estimate, flight.pose()) > 15.0) << factor << ", step " << i;
     }
     EXPECT_GE(claims, 20) << factor;
   }
@@ -93,12 +93,12 @@ TEST_F(Track, ClaimsNoHeadingThatOneWrongTurnTold) {
     for (const std::uint64_t seed : {5U, 7U}) {
       Flight flight(map_, start_, seed);
       state_ = {};
-      ASSERT_TRUE(fly(tracker, flight, 12).converged);
+      ASSERT_TRUE(fly(tracker, flight, 12).converged());
       for (int i = 0; i < 4; ++i) {
         StepInput step = flight.step();
         if (i == 0) step.odometry->turn += Angle::degrees(wrong_deg);
         const TrackEstimate estimate = advance(tracker, step);
-        if (!estimate.converged) continue;
+        if (!estimate.converged()) continue;
         ++claims;
         const double off_deg = heading_error(estimate, flight.pose()).degrees();
         EXPECT_LT(off_deg, 3.0) << wrong_deg << " at seed " << seed << ", step " << i;
@@ -111,11 +111,11 @@ TEST_F(Track, ClaimsNoHeadingThatOneWrongTurnTold) {
 TEST_F(Track, GoesWhereALookFindsTheVehicleBesideItsPlace) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);
-  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
   for (double& east_m : state_.filter.particles.east_m) east_m += 40.0;
   const TrackEstimate estimate = advance(tracker, flight.step());
   EXPECT_LT(error_m(estimate, flight.pose()), 15.0);
-  EXPECT_FALSE(estimate.converged) << "before it is borne out there";
+  EXPECT_FALSE(estimate.converged()) << "before it is borne out there";
 }
 
 TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
@@ -124,11 +124,11 @@ TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
   TrackSettings unsure = settings();
   unsure.calibration = std::make_shared<const Calibration>(doubts);
   Flight flight(map_, start_, 5);
-  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged());
   std::vector<int> claims;
   fly(Tracker(view_, unsure), flight, 9, [&](int i, const TrackEstimate& estimate) {
     EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
-    if (estimate.converged) claims.push_back(i);
+    if (estimate.converged()) claims.push_back(i);
   });
   ASSERT_FALSE(claims.empty());
   EXPECT_EQ(claims.size(), static_cast<std::size_t>(claims.back()) + 1) << "without a gap from the first";
@@ -137,7 +137,7 @@ TEST_F(Track, TakesItsClaimBackWhereLooksNoLongerBearItOutThoughFramesDo) {
 
 TEST_F(Track, TakesItsClaimBackWhereItCannotLookAroundItsPlace) {
   Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 12).converged());
   // Farther beyond the rim than looks reach, though frames still agree with what the map shows there.
   MapView beside = view_;
   beside.extent.max.east_m = flight.pose().position.east_m - 200.0;
@@ -146,18 +146,18 @@ TEST_F(Track, TakesItsClaimBackWhereItCannotLookAroundItsPlace) {
   TrackEstimate estimate;
   for (int i = 0; i < 8; ++i) estimate = advance(tracker, flight.step());
   EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
-  EXPECT_FALSE(estimate.converged);
+  EXPECT_FALSE(estimate.converged());
 }
 
 TEST_F(Track, ForgetsWhatLooksSawOfABeliefThatItThrowsAway) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 5);
-  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
   ASSERT_TRUE(state_.claim.looked_time_us);
   StepInput late = flight.step();
   late.time_us += 601'000'000;
   late.features.reset();
-  EXPECT_FALSE(advance(tracker, late).converged);
+  EXPECT_FALSE(advance(tracker, late).converged());
   EXPECT_FALSE(state_.claim.looked_time_us);
 }
 

@@ -27,7 +27,7 @@ TEST_F(Track, LearnsTheWindWhereOdometryIsRelativeToTheAir) {
     const GridPose& pose = flight.pose();
     flight.jump_to({{pose.position.east_m + 7.0, pose.position.north_m - 4.0}, pose.heading});
     const TrackEstimate estimate = advance(tracker, flight.step());
-    claims += estimate.converged ? 1 : 0;
+    claims += estimate.converged() ? 1 : 0;
     EXPECT_LT(error_m(estimate, flight.pose()), 12.0) << "step " << i;
   }
   EXPECT_GE(claims, 24);
@@ -57,19 +57,19 @@ TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
     const Tracker tracker(view_, settings());
     Flight flight(map_, start_, seed);
     state_ = {};
-    const bool claimed = fly(tracker, flight, 8).converged;
+    const bool claimed = fly(tracker, flight, 8).converged();
     claims += claimed ? 1 : 0;
     for (int second = 1; second <= 12; ++second) {
       StepInput step = flight.step(false);  // 20 m/s, turning
       step.odometry.reset();
       const TrackEstimate estimate = advance(tracker, step);
       if (second == 1) {
-        EXPECT_EQ(estimate.converged, claimed);
+        EXPECT_EQ(estimate.converged(), claimed);
       }
-      if (estimate.converged) {
+      if (estimate.converged()) {
         EXPECT_LT(error_m(estimate, flight.pose()), 15.0) << "seed " << seed << ", second " << second;
       }
-      EXPECT_FALSE(estimate.converged && second > 4) << "seed " << seed;
+      EXPECT_FALSE(estimate.converged() && second > 4) << "seed " << seed;
     }
   }
   EXPECT_GT(claims, repeats(4) / 2);
@@ -77,7 +77,7 @@ TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
 
 TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGroundAround) {
   Flight flight(map_, start_, 1);
-  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 10).converged);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 10).converged());
   const TrackerState before = state_;
   StepInput hover = flight.step(false);
   hover.odometry = Odometry{};
@@ -91,7 +91,7 @@ TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGrou
     ending.beyond_map_m = sigmas * belief.sigma_m() - to_rim_m;
     state_ = before;
     const Tracker tracker(view_, ending);
-    EXPECT_EQ(advance(tracker, hover).converged, sigmas > 10.0) << sigmas;
+    EXPECT_EQ(advance(tracker, hover).converged(), sigmas > 10.0) << sigmas;
     EXPECT_EQ(state_.filter.resets, before.filter.resets) << sigmas;
     const std::vector<double>& weights = state_.filter.particles.weight;
     const auto left = static_cast<std::size_t>(std::ranges::count(weights, 0.0));

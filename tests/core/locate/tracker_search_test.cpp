@@ -31,12 +31,12 @@ TEST_F(Track, ClaimsNoPlaceBeforeASearchHasToldItFromAllOthers) {
     Flight flight(map_, start_, 2);
     state_ = {};
     const auto look = [&](int i, const TrackEstimate& estimate) {
-      EXPECT_TRUE(!estimate.converged || state_.last_search > 0) << "step " << i;
+      EXPECT_TRUE(!estimate.converged() || state_.last_search > 0) << "step " << i;
     };
     const TrackEstimate last = fly(Tracker(view_, searches ? uniform : unsearchable), flight, 25, look);
     EXPECT_LT(error_m(last, flight.pose()), 12.0);
     EXPECT_TRUE(state_.claim.outweighs_chance());
-    EXPECT_EQ(last.converged, searches);
+    EXPECT_EQ(last.converged(), searches);
   }
 }
 
@@ -69,7 +69,7 @@ TEST_F(Track, ClaimsNoPlaceWhoseStreetsLookThatWayFromAWrongAltitudeOnly) {
     step.features->cell_m *= kShare;
     const TrackEstimate estimate = advance(tracker, step);
     searched += estimate.measurement == Measurement::kSearched ? 1 : 0;
-    EXPECT_FALSE(estimate.converged) << "step " << i << ", off by " << error_m(estimate, flight.pose());
+    EXPECT_FALSE(estimate.converged()) << "step " << i << ", off by " << error_m(estimate, flight.pose());
   }
   EXPECT_GT(searched, 0);
 }
@@ -134,7 +134,8 @@ TEST_F(Track, ClaimsNoPlaceWhereOneBrightStrokeHidesFaintRoads) {
       StepInput step = flight.step();
       stroke(*step.features, random);
       const TrackEstimate estimate = advance(tracker, step);
-      EXPECT_TRUE(!estimate.converged || error_m(estimate, flight.pose()) < 25.0) << "seed " << seed << ", step " << i;
+      EXPECT_TRUE(!estimate.converged() || error_m(estimate, flight.pose()) < 25.0)
+          << "seed " << seed << ", step " << i;
     }
   }
 }
@@ -145,7 +146,7 @@ TEST_F(Track, ClaimsNoPlaceAmongManyThatFitAlike) {
   const MapView view = testing::view_of(grid);
   Flight flight(grid, start_, 13);
   fly(Tracker(view, settings()), flight, 40,
-      [](int i, const TrackEstimate& estimate) { EXPECT_FALSE(estimate.converged) << "step " << i; });
+      [](int i, const TrackEstimate& estimate) { EXPECT_FALSE(estimate.converged()) << "step " << i; });
 }
 
 TEST_F(Track, FindsAVehicleThatWasToldToBeWhereTheMapShowsNothing) {
@@ -161,7 +162,7 @@ TEST_F(Track, FindsAVehicleThatWasToldToBeWhereTheMapShowsNothing) {
   Flight flight(map_, truth, 5);
   flight.step_m = 2.0;
   const TrackEstimate last = fly(tracker, flight, 20);
-  EXPECT_TRUE(last.converged);
+  EXPECT_TRUE(last.converged());
   EXPECT_LT(error_m(last, flight.pose()), 12.0);
 }
 
@@ -198,8 +199,8 @@ TEST_F(Track, NoticesAKidnappingAndRecovers) {
     const TrackEstimate estimate = advance(tracker, flight.step());
     searched += estimate.measurement == Measurement::kSearched ? 1 : 0;
     const bool right = error_m(estimate, flight.pose()) < 20.0;
-    EXPECT_TRUE(i < 12 || right || !estimate.converged) << "still sure of the wrong place";
-    if (estimate.converged && right) recovered = i;
+    EXPECT_TRUE(i < 12 || right || !estimate.converged()) << "still sure of the wrong place";
+    if (estimate.converged() && right) recovered = i;
   }
   EXPECT_EQ(searched, 1) << "what a search has found is followed";
   EXPECT_GE(recovered, 0);
@@ -224,7 +225,7 @@ TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
   near_start.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 300.0};
   const Tracker tracker(wide, near_start);
   Flight flight(map_, start_, 5);
-  ASSERT_TRUE(fly(tracker, flight, 15).converged);
+  ASSERT_TRUE(fly(tracker, flight, 15).converged());
 
   // Time enough, on any machine, for what is searched around.
   const StepLimits unlimited;
@@ -243,7 +244,7 @@ TEST_F(Track, IsFoundAroundItsPlaceWhereASearchOverTheWholeMapOutlastsTheTime) {
     slow_until = steady_clock::now() + time / 3;
     StepResult result = tracker.advance(state_, flight.step(), limits);
     state_ = std::move(result.state);
-    recovered = result.estimate.converged && error_m(result.estimate, flight.pose()) < 20.0;
+    recovered = result.estimate.converged() && error_m(result.estimate, flight.pose()) < 20.0;
   }
   EXPECT_GT(outlasted, 0);
   EXPECT_TRUE(recovered);
@@ -259,14 +260,14 @@ TEST_F(Track, ClaimsNoPlaceAgainThatItLostSightOfBeforeASearchFindsItThere) {
     for (const std::uint64_t seed : {1U, 2U, 3U}) {
       Flight flight(map_, start_, seed);
       state_ = {};
-      ASSERT_TRUE(fly(tracker, flight, 12).converged);
+      ASSERT_TRUE(fly(tracker, flight, 12).converged());
       bool lost = false;
       for (int i = 0; i < 45; ++i) {
         StepInput step = flight.step(false);
         step.features = seen;
         const TrackEstimate estimate = advance(tracker, step);
-        EXPECT_FALSE(lost && estimate.converged) << "seed " << seed << ", step " << i;
-        lost = lost || !estimate.converged;
+        EXPECT_FALSE(lost && estimate.converged()) << "seed " << seed << ", step " << i;
+        lost = lost || !estimate.converged();
       }
       EXPECT_TRUE(lost);
     }
@@ -276,7 +277,7 @@ TEST_F(Track, ClaimsNoPlaceAgainThatItLostSightOfBeforeASearchFindsItThere) {
 TEST_F(Track, ClaimsNoOtherPlaceThatItsBeliefGoesOverToBeforeASearchFindsItThere) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 1);
-  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
   std::vector<double>& east_m = state_.filter.particles.east_m;
   for (std::size_t i = 0; i < east_m.size(); ++i) {
     if (i % 5 < 3) east_m[i] -= 300.0;
@@ -284,7 +285,7 @@ TEST_F(Track, ClaimsNoOtherPlaceThatItsBeliefGoesOverToBeforeASearchFindsItThere
   const TrackEstimate estimate = advance(tracker, flight.step());
   EXPECT_LT(error_m(estimate, flight.pose()), 15.0);
   EXPECT_EQ(estimate.measurement, Measurement::kAccepted);
-  EXPECT_FALSE(estimate.converged);
+  EXPECT_FALSE(estimate.converged());
 }
 
 TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
@@ -293,7 +294,7 @@ TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
     const Tracker tracker(view_, settings());
     Flight flight(map_, start_, 5);
     state_ = {};
-    ASSERT_TRUE(fly(tracker, flight, 12).converged);
+    ASSERT_TRUE(fly(tracker, flight, 12).converged());
     int rejected = 0;
     int max_rejected = 0;
     for (int i = 0; i < 12; ++i) {
@@ -305,7 +306,7 @@ TEST_F(Track, TakesItsClaimBackWhenThreeMeasurementsInARowSpeakAgainstIt) {
       const TrackEstimate estimate = advance(tracker, step);
       rejected = estimate.measurement == Measurement::kRejected ? rejected + 1 : 0;
       max_rejected = std::max(max_rejected, rejected);
-      EXPECT_FALSE(estimate.converged && rejected >= 3) << slip_m << " m a step, step " << i;
+      EXPECT_FALSE(estimate.converged() && rejected >= 3) << slip_m << " m a step, step " << i;
     }
     EXPECT_GE(max_rejected, 3) << slip_m << " m a step";
   }
@@ -320,7 +321,8 @@ TEST_F(Track, IsFoundByItsLastFramesTogetherWhereEachShowsTooLittle) {
     flight.side_cells = 28;
     state_ = {};
     const auto look = [&](int i, const TrackEstimate& estimate) {
-      EXPECT_TRUE(!estimate.converged || error_m(estimate, flight.pose()) < 25.0) << "seed " << seed << ", step " << i;
+      EXPECT_TRUE(!estimate.converged() || error_m(estimate, flight.pose()) < 25.0)
+          << "seed " << seed << ", step " << i;
     };
     const TrackEstimate last = fly(Tracker(view_, few), flight, 40, look);
     found += error_m(last, flight.pose()) < 25.0 ? 1 : 0;
@@ -422,7 +424,7 @@ TEST_F(TrackBeyondTheMap, ClaimsNoPlaceOnTheMapForGroundFarBesideIt) {
     step.odometry = Odometry{20.0, 0.0, Angle()};
     step.features = testing::observed_at(elsewhere, pose, 128, 128, 2.0, {0.1, 0.1}, random_);
     const TrackEstimate estimate = advance(tracker, step);
-    EXPECT_FALSE(estimate.converged && error_m(estimate, pose) > 25.0) << "step " << i;
+    EXPECT_FALSE(estimate.converged() && error_m(estimate, pose) > 25.0) << "step " << i;
   }
 }
 

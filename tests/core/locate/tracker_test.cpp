@@ -25,7 +25,7 @@ TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
   flight.side_cells = 160;
   fly(Tracker(view_, settings()), flight, 25, [&](int i, const TrackEstimate& estimate) {
     if (i < 5) return;
-    ASSERT_TRUE(estimate.converged) << "step " << i;
+    ASSERT_TRUE(estimate.converged()) << "step " << i;
     EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
     const Angle heading = view_.zone.true_from_grid(flight.pose().heading, flight.pose().position);
     EXPECT_LT(angular_distance(estimate.clusters[0].pose.heading, heading).degrees(), 4.0);
@@ -44,21 +44,21 @@ TrackerState parted(TrackerState state, double share) {
 TEST_F(Track, ClaimsNoPlaceThatItHasGoneOverToBeforeASearchAndALook) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 1);
-  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
   ASSERT_TRUE(state_.claim.is_told_apart() && state_.claim.looked_time_us);
   state_.last_search = state_.measured;
   const StepInput step = flight.step();
-  EXPECT_TRUE(tracker.advance(state_, step).estimate.converged);
+  EXPECT_TRUE(tracker.advance(state_, step).estimate.converged());
   const StepResult gone_over = tracker.advance(parted(state_, 0.7), step);
   EXPECT_LT(error_m(gone_over.estimate, flight.pose()), 15.0);
-  EXPECT_FALSE(gone_over.estimate.converged);
+  EXPECT_FALSE(gone_over.estimate.converged());
   EXPECT_FALSE(gone_over.state.claim.confirmed || gone_over.state.claim.looked_time_us);
 }
 
 TEST_F(Track, ClaimsNoPlaceAgainBeforeALookWhereItPartedUnseen) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 1);
-  ASSERT_TRUE(fly(tracker, flight, 12).converged);
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
   StepInput unseen = flight.step();
   unseen.features.reset();
   EXPECT_TRUE(tracker.advance(state_, unseen).state.claim.looked_time_us);
@@ -107,7 +107,7 @@ TEST_F(Track, ConvergesFromAUniformBeliefWithoutSearch) {
       GeoCircle{view_.zone.unproject({start_.position.east_m + 100.0, start_.position.north_m}), 250.0};
   Flight flight(map_, start_, 2);
   const TrackEstimate last = fly(Tracker(view_, uniform), flight, 25);
-  EXPECT_TRUE(last.converged);
+  EXPECT_TRUE(last.converged());
   EXPECT_LT(error_m(last, flight.pose()), 12.0);
 }
 
@@ -134,8 +134,8 @@ TEST_F(Track, GrowsLessSureWithoutSightAndSaysWhenItSawLast) {
     blind = advance(tracker, flight.step(false));
     EXPECT_EQ(blind.measurement, Measurement::kNone);
   }
-  EXPECT_TRUE(seeing.converged);
-  EXPECT_FALSE(blind.converged) << "a minute without sight is stale";
+  EXPECT_TRUE(seeing.converged());
+  EXPECT_FALSE(blind.converged()) << "a minute without sight is stale";
   EXPECT_DOUBLE_EQ(blind.since_accepted_s.value(), 61.0);
   EXPECT_GT(blind.clusters[0].ellipse.sigma_m[0], 2.0 * seeing.clusters[0].ellipse.sigma_m[0]);
 }
@@ -202,7 +202,7 @@ CellArray bare_ground(int cols, int rows, std::mt19937_64& random) {
 TEST_F(Track, TakesALakeNeitherForNorAgainstItsPlaceThoughADetectorSeesAFewPerMilleOfRoadThere) {
   Flight flight(map_, start_, 1);
   flight.side_cells = 160;
-  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 6).converged);
+  ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 6).converged());
   std::mt19937_64 random(7);
   const RoadGrid lake{map_.geometry, bare_ground(map_.geometry.cols, map_.geometry.rows, random)};
   const MapView over_the_lake = view_of(lake);
@@ -210,7 +210,7 @@ TEST_F(Track, TakesALakeNeitherForNorAgainstItsPlaceThoughADetectorSeesAFewPerMi
   input.features = FeatureMap::centred(bare_ground(128, 128, random), 2.0);
   const TrackEstimate over_it = advance(Tracker(over_the_lake, settings()), input);
   EXPECT_EQ(over_it.measurement, Measurement::kUseless);
-  EXPECT_TRUE(over_it.converged);
+  EXPECT_TRUE(over_it.converged());
 }
 
 TEST_F(Track, IsFollowedBeyondTheRimOfItsMapAndBack) {
@@ -256,16 +256,16 @@ TEST_F(Track, LearnsAnErrorOfTheAltitudeThatItIsToldToExpect) {
       StepInput step = flight.step();
       step.features->cell_m /= 1.12;  // the ground is larger than the vehicle thinks
       last = advance(tracker, step);
-      EXPECT_TRUE(!last.converged || error_m(last, flight.pose()) < 20.0) << "step " << i;
+      EXPECT_TRUE(!last.converged() || error_m(last, flight.pose()) < 20.0) << "step " << i;
     }
     return last;
   };
   const TrackEstimate told = end_of(0.2);
-  EXPECT_TRUE(told.converged);
+  EXPECT_TRUE(told.converged());
   EXPECT_NEAR(told.clusters[0].scale, 1.12, 0.02) << "two cells at the edge of a footprint of 180";
   EXPECT_LT(told.clusters[0].scale_sigma, 0.02);
   const TrackEstimate untold = end_of(0.0);
-  EXPECT_FALSE(untold.converged);
+  EXPECT_FALSE(untold.converged());
   EXPECT_EQ(untold.clusters[0].scale, 1.0);
   TrackSettings impossible = settings();
   impossible.vehicle.scale_range = 0.5;
@@ -280,7 +280,7 @@ TEST_F(Track, BeginsAnewAfterALongGap) {
   next.time_us += 601'000'000;
   const TrackEstimate after = advance(tracker, next);
   EXPECT_EQ(after.resets, 1U);
-  EXPECT_FALSE(after.converged);
+  EXPECT_FALSE(after.converged());
   next = flight.step();
   next.time_us += 601'000'000;
   EXPECT_EQ(advance(tracker, next).measurement, Measurement::kSearched);
@@ -289,12 +289,12 @@ TEST_F(Track, BeginsAnewAfterALongGap) {
 TEST_F(Track, ClaimsNoPlaceAtAStepWhoseFrameSpeaksAgainstIt) {
   const Tracker tracker(view_, settings());
   Flight flight(map_, start_, 21);
-  ASSERT_TRUE(fly(tracker, flight, 8).converged);
+  ASSERT_TRUE(fly(tracker, flight, 8).converged());
   const GridPose here = flight.pose();
   flight.jump_to({{here.position.east_m - 400.0, here.position.north_m + 300.0}, here.heading});
   const TrackEstimate elsewhere = advance(tracker, flight.step());
   EXPECT_EQ(elsewhere.measurement, Measurement::kRejected);
-  EXPECT_FALSE(elsewhere.converged);
+  EXPECT_FALSE(elsewhere.converged());
 }
 
 TEST_F(Track, GivesTheSameAnswersWithAnyNumberOfThreadsAndFromItsState) {

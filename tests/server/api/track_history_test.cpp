@@ -29,10 +29,15 @@ nlohmann::json line_of(const std::vector<std::string>& answers) {
 }
 
 TEST(TrackHistory, SaysOfEachStepHowItWasToldAndByWhat) {
-  const nlohmann::json properties{{"sequence", 7},         {"time_us", 8},
-                                  {"status", "searching"}, {"doubt", 0.2},
-                                  {"drifts", false},       {"measurement", "rejected"},
-                                  {"resets", 1},           {"made_by", {{"roadfix", "0.1.0"}}}};
+  const nlohmann::json properties{{"sequence", 7},
+                                  {"time_us", 8},
+                                  {"status", "searching"},
+                                  {"reason", "several-places"},
+                                  {"doubt", 0.2},
+                                  {"drifts", false},
+                                  {"measurement", "rejected"},
+                                  {"resets", 1},
+                                  {"made_by", {{"roadfix", "0.1.0"}}}};
   nlohmann::json answer = properties;
   answer["clusters"] = nlohmann::json::array();
   const nlohmann::json history = history_json(kTrack, std::vector<std::string>{answer.dump()});

@@ -41,6 +41,17 @@ await run({
     assert.match(details.textContent, /37\.000000, 38\.000000/);
     assert.ok(!isOld());
   },
+  async 'a track that claims no place says why'() {
+    const { pose, ...searching } = { ...converged, sequence: 2, status: 'searching', explanation: 'fly on over ground with roads' };
+    answer(track('one', searching));
+    await tracks.look();
+    assert.match(output.textContent, /searching/);
+    assert.match(details.textContent, /no place\nfly on over ground with roads/);
+    assert.doesNotMatch(details.textContent, /lat, lon|within/);
+    answer(track('one', converged));
+    await tracks.look();
+    assert.match(details.textContent, /37\.000000, 38\.000000/);
+  },
   async 'a service that cannot be reached makes the last estimate an old one, until it answers again'() {
     service.answers = null;
     await tracks.look();

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <utility>
@@ -21,8 +20,6 @@ constexpr const char* kBusy = "map-busy";
 
 /// A request or a look at the folder waits so long for a writer: both are repeated, and others wait behind them.
 constexpr std::chrono::seconds kLockPatience{1};
-
-std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * std::int64_t{1'000'000'000} + time.tv_nsec; }
 
 /// By its name. Those that begin with a dot are hidden: copies under way, and what a Mac keeps beside a file
 /// (._city.gpkg).
@@ -113,22 +110,6 @@ void MapRegistry::stop() {
   watcher_.join();
 }
 
-MapRegistry::Stamp MapRegistry::stamp_of(const fs::path& path) {
-  Stamp stamp;
-  struct stat file = {};
-  if (::stat(path.c_str(), &file) == 0) {
-    stamp.changed = nanoseconds(file.st_ctim);
-    stamp.size = static_cast<std::uintmax_t>(file.st_size);
-    stamp.inode = file.st_ino;
-  }
-  struct stat wal = {};
-  if (::stat((path.string() + "-wal").c_str(), &wal) == 0) {
-    stamp.wal_changed = nanoseconds(wal.st_ctim);
-    stamp.wal_size = static_cast<std::uintmax_t>(wal.st_size);
-  }
-  return stamp;
-}
-
 MapRegistry::Entry MapRegistry::seen(const Entry& known, const fs::path& path, const Stamp& stamp) const {
   try {
     return is_current(known, path, stamp) ? Entry{stamp, known.map, std::nullopt} : opened(path, stamp);
@@ -160,7 +141,7 @@ MapRegistry::Entry MapRegistry::opened(const fs::path& path, const Stamp& stamp)
 bool MapRegistry::is_current(const Entry& entry, const fs::path& path, const Stamp& stamp) const {
   if (entry.map == nullptr) return false;
   if (entry.stamp == stamp) return true;
-  if (entry.stamp.inode != stamp.inode) return false;
+  if (!entry.stamp.file || !stamp.file || entry.stamp.file->identity != stamp.file->identity) return false;
   try {
     return says_the_same(MapReader(path, 0, kLockPatience).info(), entry.map->reader->info());
   } catch (const InUse&) {
@@ -204,7 +185,7 @@ void MapRegistry::look() {
   }
   left_out_ = files.left_out;
   for (const auto& [name, path] : files.of_name) {
-    const Stamp stamp = stamp_of(path);
+    const Stamp stamp{stamp_of(path), stamp_of(path.string() + "-wal")};
     Entry known;  // outlives the lock in which another takes its place: to free a map may take long
     {
       const std::lock_guard lock(mutex_);

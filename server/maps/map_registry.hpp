@@ -4,7 +4,6 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -17,6 +16,7 @@
 #include <vector>
 
 #include "core/locate/map_view.hpp"
+#include "tiles/store/file_identity.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix::server {
@@ -75,13 +75,11 @@ class MapRegistry {
   std::size_t search_cached_bytes() const;
 
  private:
-  /// What tells that a file may have changed. Its date does not: `cp -p` writes into a file and gives it an older one.
+  /// What tells that a map may have changed. The date of its file does not: `cp -p` writes into a file and gives it an
+  /// older one.
   struct Stamp {
-    std::int64_t changed = 0;
-    std::uintmax_t size = 0;
-    std::int64_t wal_changed = 0;
-    std::uintmax_t wal_size = 0;
-    std::uint64_t inode = 0;
+    std::optional<FileStamp> file;
+    std::optional<FileStamp> wal;
     friend bool operator==(const Stamp&, const Stamp&) = default;
   };
   struct Entry {
@@ -89,7 +87,6 @@ class MapRegistry {
     std::shared_ptr<const ServedMap> map;  ///< null if unreadable
     std::optional<UnreadableMap> problem;  ///< why it is
   };
-  static Stamp stamp_of(const std::filesystem::path& path);
   Entry seen(const Entry& known, const std::filesystem::path& path, const Stamp& stamp) const;
   Entry opened(const std::filesystem::path& path, const Stamp& stamp) const;
   void look();

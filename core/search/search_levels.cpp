@@ -135,9 +135,15 @@ std::vector<LatticePose> SearchLevels::distinct(std::vector<LatticePose> poses, 
   const int bins_apart = spacing.coarse_bins * (level.bins.count() / coarse().bins.count());
   const double apart_cells = spacing.metres / level.cell_m();
   std::vector<LatticePose> kept;
-  std::array<std::size_t, 2> count{};
+  const PoseRegion within = widened(region_, level);
+  const PoseRegion nearly = region_.grown(0.0, kHeadingsBeyond);
+  const auto side_of = [&](const GridPose& pose) -> std::size_t {
+    if (within.contains(pose)) return 0;
+    return nearly.contains(pose.heading) ? 1 : 2;
+  };
+  std::array<std::size_t, 3> count{};
   for (const LatticePose& pose : poses) {
-    std::size_t& same_side = count[within_region(level, pose) ? 0 : 1];
+    std::size_t& same_side = count[side_of(level.pose_of(pose))];
     if (pose.score <= 0.0 || same_side >= keep) continue;
     const bool known = std::ranges::any_of(kept, [&](const LatticePose& other) {
       const double east = pose.cell.col - other.cell.col;

@@ -56,8 +56,9 @@ class SearchLevels {
   static PoseRegion widened(const PoseRegion& region, const Level& level);
   /// Whether the pose lies in the widened region.
   bool within_region(const Level& level, const LatticePose& pose) const;
-  /// The poses that are distinct from every better one, best first: up to `keep` from within the region, and up to as
-  /// many from outside.
+  /// The poses that are distinct from every better one, best first: up to `keep` from within the region, as many from
+  /// around it, and as many at headings beyond its range, which in a grid of streets fit as well and would crowd out
+  /// those around.
   std::vector<LatticePose> distinct(std::vector<LatticePose> poses, const Level& level, const PoseSpacing& spacing,
                                     std::size_t keep) const;
   /// The same with the spacing of candidates that are followed.

@@ -39,6 +39,22 @@ TEST_F(BeyondPrior, TheTruthIsFoundSoThatAPlaceLikeItInsideIsNoFix) {
   EXPECT_LT(distance_m(view_.zone.project(right.modes[0].pose.position), truth_.position), 2.0);
 }
 
+// Streets that repeat exactly fit as well at four headings.
+TEST_F(BeyondPrior, StreetsThatRepeatGiveNoFixHoweverNarrowThePriorAndItsHeadings) {
+  const RoadGrid blocks = testing::grid_city(map_.geometry, 100.0);
+  const MapView view = testing::view_of(blocks);
+  for (const int cells : {130, 170, 220}) {
+    const FeatureMap frame = testing::observed_at(blocks, truth_, cells, cells, 2.0, {0.15, 0.15}, random_);
+    for (const double half_width_deg : {5.0, 15.0, 40.0}) {
+      Prior prior = circle(10.0, 30.0);
+      prior.heading = HeadingRange{on_earth(truth_, view.zone).heading, Angle::degrees(half_width_deg)};
+      const Fix fix = locate(view, frame, prior, {});
+      EXPECT_NE(fix.status, FixStatus::kFix) << cells << " cells, " << half_width_deg << " degrees";
+      EXPECT_LT(fix.probability, 0.25) << cells << " cells, " << half_width_deg << " degrees";
+    }
+  }
+}
+
 TEST_F(BeyondPrior, ABoxEndsAtItsSidesHoweverHighItIs) {
   const FeatureMap frame = seen(200);
   const auto fix_within = [&](double east_of_truth_m) {

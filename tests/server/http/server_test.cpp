@@ -17,7 +17,7 @@ class HttpServer : public testing::HttpServerTest {};
 template <typename Ask>
 httplib::Result answer_to(const Ask& ask) {
   httplib::Result answer = ask();
-  for (int tries = 1; !answer && tries < 5; ++tries) answer = ask();
+  for (int tries = 1; !answer && tries < 100; ++tries) answer = ask();
   return answer;
 }
 

@@ -80,8 +80,6 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
     throw InvalidInput("option-without-effect", "a service has a filter of its own: leave out --filter or --server");
   }
   if (plan.map.empty()) plan.map = std::filesystem::path(options.map).stem().string();
-  // The whole map is served: what lies around the square is not hidden from the track, but its start.
-  if (options.area_m > 0.0) plan.area = geo_box_around(map.zone, map.extent);
   plan.stop = stop;
   return fly::service_localizers(plan);
 }
@@ -93,6 +91,15 @@ fly::Campaign campaign_of(const FlyOptions& options, const MapView& map, const G
   campaign.flights = flights_of(options, map, ground, plan);
   campaign.stop = stop_on_signals();
   campaign.localizer = localizers_of(options, map, campaign.stop);
+  const double radius_m = campaign.start.radius_m.value_or(0.0);
+  if (options.service.filter.start_is_known && radius_m > Reach::kMaxM) {
+    throw InvalidInput("parameter-out-of-range",
+                       fmt::format("--known-start: a --start-radius of {:g} m is too wide, at most {:g} are allowed",
+                                   radius_m, Reach::kMaxM));
+  }
+  // The whole map is served: what lies around the square is not hidden from the track, but its start.
+  const bool serves_more = !options.service.base.empty() && options.area_m > 0.0;
+  if (serves_more) campaign.start.box = geo_box_around(map.zone, map.extent);
   return campaign;
 }
 

@@ -50,6 +50,25 @@ void add_basics(CLI::App& command, FlyOptions& o) {
 void add_belief_options(CLI::App& command, FlyOptions& o) {
   constexpr const char* kGroup = "What the filters take to be uncertain";
   command
+      .add_option(
+          "--start-radius", o.campaign.start.radius_m,
+          "Metres: filters are told a circle of this radius that holds the start, anywhere in it; default: they "
+          "know nothing of the start")
+      ->group(kGroup)
+      ->check(positive());
+  command
+      .add_option_function<double>(
+          "--start-heading-range",
+          [&o](double degrees) { o.campaign.start.heading_half_width = Angle::degrees(degrees); },
+          "Degrees: they are told a heading of the start that is right to within so much")
+      ->group(kGroup)
+      ->check(between(0.0, 180.0));
+  command
+      .add_flag("--known-start", o.service.filter.start_is_known,
+                "That circle (of 150 m at most) is certain: places need not be told apart beyond reach of it")
+      ->group(kGroup)
+      ->needs("--start-radius");
+  command
       .add_option("--scale-range", o.service.filter.vehicle.scale_range,
                   "Lasting altitude error: the ground seen may be smaller or larger by this share")
       ->capture_default_str()

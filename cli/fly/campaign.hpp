@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -10,6 +11,8 @@
 #include "cli/fly/flight.hpp"
 #include "cli/fly/localizer.hpp"
 #include "cli/fly/summary.hpp"
+#include "core/geodesy/geo_box.hpp"
+#include "core/locate/prior.hpp"
 #include "core/units/progress.hpp"
 
 namespace roadfix::fly {
@@ -19,8 +22,9 @@ struct FilterRuns {
   std::vector<Run> runs;
 };
 
-/// Makes the localizer of a flight: by the name of the filter, with that seed.
-using LocalizerFactory = std::function<std::unique_ptr<Localizer>(const std::string& filter, std::uint64_t seed)>;
+/// Makes the localizer of a flight: by the name of the filter, with that seed, told where the flight begins.
+using LocalizerFactory =
+    std::function<std::unique_ptr<Localizer>(const std::string& filter, std::uint64_t seed, const Prior& start)>;
 
 /// A flight, by its number and seed; `seen` is to be called after each step.
 using FlightSource = std::function<Flight(int number, std::uint64_t seed, const std::function<void()>& seen)>;
@@ -32,8 +36,16 @@ struct Flights {
   std::int64_t steps = 0;  ///< of all together, at most; for the progress
 };
 
+/// What filters are told of where flights begin.
+struct ToldStart {
+  std::optional<GeoBox> box;
+  std::optional<double> radius_m;           ///< of a circle that holds the start, anywhere in it
+  std::optional<Angle> heading_half_width;  ///< of a range of headings that holds that of the start
+};
+
 struct Campaign {
   Flights flights;
+  ToldStart start;
   LocalizerFactory localizer;
   std::vector<std::string> filters{"default"};
   std::uint64_t seed = 1;  ///< of the first flight; the next ones count up

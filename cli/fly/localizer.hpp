@@ -28,6 +28,7 @@ std::unique_ptr<Localizer> make_localizer(const MapView& map, const TrackSetting
 /// What all filters are asked for alike.
 struct FilterPlan {
   int particles = 10'000;  ///< at most
+  bool start_is_known = false;
   VehicleNoise vehicle = {};
 };
 

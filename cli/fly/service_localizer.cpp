@@ -21,9 +21,9 @@ constexpr std::chrono::seconds kFarewellTime{2};  // nobody waits for that answe
 
 class ServiceLocalizer : public Localizer {
  public:
-  ServiceLocalizer(const ServicePlan& plan, std::uint64_t seed)
+  ServiceLocalizer(const ServicePlan& plan, std::uint64_t seed, const Prior& start)
       : connection_(plan), base_(plan.base), keeps_(plan.keeps_tracks) {
-    const std::string request = track_request(plan, seed).dump();
+    const std::string request = track_request(plan, seed, start).dump();
     // Should the answer be lost, the track that was begun expires without a step.
     const json track =
         connection_.ask([&](http::Client& client) { return client.post("/v1/tracks", request, "application/json"); });
@@ -80,8 +80,8 @@ class ServiceLocalizer : public Localizer {
 }  // namespace
 
 LocalizerFactory service_localizers(const ServicePlan& plan) {
-  return [plan](const std::string&, std::uint64_t seed) -> std::unique_ptr<Localizer> {
-    return std::make_unique<ServiceLocalizer>(plan, seed);
+  return [plan](const std::string&, std::uint64_t seed, const Prior& start) -> std::unique_ptr<Localizer> {
+    return std::make_unique<ServiceLocalizer>(plan, seed, start);
   };
 }
 

@@ -2,19 +2,16 @@
 #pragma once
 
 #include <chrono>
-#include <optional>
 #include <stop_token>
 #include <string>
 
 #include "cli/fly/localizer.hpp"
-#include "core/geodesy/geo_box.hpp"
 
 namespace roadfix::fly {
 
 struct ServicePlan {
-  std::string base;            ///< "http://HOST:PORT"
-  std::string map;             ///< its name there
-  std::optional<GeoBox> area;  ///< where tracks begin, if not anywhere on the map
+  std::string base;  ///< "http://HOST:PORT"
+  std::string map;   ///< its name there
   FilterPlan filter;
   /// How long a request that gets no answer, or one that may pass, is sent again and again: long enough for a service
   /// that was killed to come back.

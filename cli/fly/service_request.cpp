@@ -75,7 +75,7 @@ std::string as_query(const json& fields) {
 
 }  // namespace
 
-json track_request(const ServicePlan& plan, std::uint64_t seed) {
+json track_request(const ServicePlan& plan, std::uint64_t seed, const Prior& start) {
   const VehicleNoise& vehicle = plan.filter.vehicle;
   json request{{"map", plan.map},
                {"particles", plan.filter.particles},
@@ -83,9 +83,19 @@ json track_request(const ServicePlan& plan, std::uint64_t seed) {
                {"odometry_share", vehicle.odometry_share},
                {"wind_sigma_m_s", vehicle.wind.sigma_m_s},
                {"scale_range", vehicle.scale_range}};
-  if (const auto& area = plan.area) {
-    request["bbox"] = {area->south_west.lon_deg, area->south_west.lat_deg, area->north_east.lon_deg,
-                       area->north_east.lat_deg};
+  if (plan.filter.start_is_known) request["known_start"] = true;
+  if (const auto& box = start.box) {
+    request["bbox"] = {box->south_west.lon_deg, box->south_west.lat_deg, box->north_east.lon_deg,
+                       box->north_east.lat_deg};
+  }
+  if (const auto& circle = start.circle) {
+    request["lat"] = circle->centre.lat_deg;
+    request["lon"] = circle->centre.lon_deg;
+    request["radius_m"] = circle->radius_m;
+  }
+  if (const auto& heading = start.heading) {
+    request["heading_deg"] = heading->centre.degrees();
+    request["heading_range_deg"] = heading->half_width.degrees();
   }
   if (vehicle.planar) {
     const auto degrees = [](double radians) { return Angle::radians(radians).degrees(); };

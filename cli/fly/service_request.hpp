@@ -7,11 +7,12 @@
 
 #include "cli/fly/flight.hpp"
 #include "cli/fly/service_plan.hpp"
+#include "core/locate/prior.hpp"
 
 namespace roadfix::fly {
 
 /// The body of POST /v1/tracks.
-nlohmann::json track_request(const ServicePlan& plan, std::uint64_t seed);
+nlohmann::json track_request(const ServicePlan& plan, std::uint64_t seed, const Prior& start);
 
 /// JSON where nothing was seen, else a picture, described in the query.
 struct StepRequest {

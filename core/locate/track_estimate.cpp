@@ -42,7 +42,7 @@ const char* explanation_of(Unclaimed why) {
       return "what was seen since the last contradiction may fit by chance: fly on over ground with roads, or higher";
     case Unclaimed::kOthersNotRuledOut:
       return "no search has ruled out other places, or this one on ground of another size: fly on; if it stays so, the "
-             "streets repeat, or the height is wrong: begin a track with scale_range";
+             "streets repeat, or the height is wrong: begin a track with scale_range, or one whose start is known";
     case Unclaimed::kNotBorneOut:
       break;
   }

@@ -76,10 +76,17 @@ bool fits_better_turned(const MapView& map, const FeatureMap& frame, const Clust
   return false;
 }
 
+LookArea LookArea::around(const GridPose& belief, double flown_m) {
+  return {belief, std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM), kLookHeading};
+}
+
+LookArea LookArea::of(const Reach& reach) {
+  return {{reach.position, reach.heading}, reach.radius_m, reach.turned_at_most()};
+}
+
 Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
-                 double flown_m) {
-  const double radius_m = std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM);
-  const auto around = prior_near(map, belief.mean, radius_m, kLookHeading);
+                 const LookArea& area) {
+  const auto around = prior_near(map, area.centre, area.radius_m, area.heading_half_width);
   if (!around) return {};
   const FeatureMap seen = at_scale_of(belief, frame);
   const std::optional<Fix> fix =

@@ -9,6 +9,7 @@
 
 #include "core/filter/clusters.hpp"
 #include "core/filter/filter.hpp"
+#include "core/locate/reach.hpp"
 #include "core/locate/track_search.hpp"
 
 namespace roadfix {
@@ -40,9 +41,20 @@ struct Look {
 /// the odometry told a turn wrong.
 bool fits_better_turned(const MapView& map, const FeatureMap& frame, const Cluster& belief);
 
-/// Searches as far around `belief` as the odometry may have misled it since the last look, `flown_m` ago. kOpen if that
-/// lies off the map or is too large to search.
+/// Where a look searches.
+struct LookArea {
+  GridPose centre;
+  double radius_m = 0.0;
+  Angle heading_half_width;
+
+  /// As far around a belief as the odometry may have misled it since the last look, so much flown ago.
+  static LookArea around(const GridPose& belief, double flown_m);
+  /// All of it.
+  static LookArea of(const Reach& reach);
+};
+
+/// kOpen if the area lies off the map or is too large to search.
 Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
-                 double flown_m);
+                 const LookArea& area);
 
 }  // namespace roadfix

@@ -21,6 +21,10 @@ constexpr double kLeastManoeuvreMS = 1.0;
 constexpr double kTurnLastsS = 3.0;
 constexpr double kTurnDoubt = 0.5;
 
+// At most: of a vehicle whose motion is not told, and of the wind.
+constexpr double kStraySpeeds = 2.0;
+constexpr double kWindSigmas = 2.0;
+
 // 1 sigma per axis of the wind that is learned once the odometry was found to be wrong, unless a stronger one was told.
 constexpr double kFoundWindShare = 0.3;
 constexpr double kLeastFoundWindMS = 5.0;
@@ -65,6 +69,13 @@ double StepMotion::move(Filter& filter) {
   const auto& planar = vehicle_.planar;
   if (!planar) return coast(filter, !coasted);
   return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk()});
+}
+
+void StepMotion::carry(Reach& reach) const {
+  if (!told_.odometry) return reach.stray(kStraySpeeds * travelled_m() + kLeastManoeuvreMS * told_.seconds);
+  const auto [odometry, covariance] =
+      with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
+  reach.move(odometry, covariance, kWindSigmas * wind().sigma_m_s * told_.seconds);
 }
 
 void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/filter/filter.hpp"
+#include "core/locate/reach.hpp"
 #include "core/locate/track_settings.hpp"
 
 namespace roadfix {
@@ -48,6 +49,8 @@ class StepMotion {
   /// Where particles live, and the drift of new ones.
   AcceptanceRegion region() const;
 
+  /// Moves what bounds the vehicle's place.
+  void carry(Reach& reach) const;
   /// Moves the particles; returns what Filter::predict() does. Throws as OdometryMotion does.
   double move(Filter& filter);
   /// Forgets what was learned, but for odometry found to be wrong.

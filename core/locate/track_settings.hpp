@@ -46,6 +46,9 @@ enum class TrackStart { kSearch, kUniform };
 
 struct TrackSettings {
   Prior prior;  ///< where the vehicle may be at the first step
+  /// The prior is no guess: the vehicle is within its circle, of at most Reach::kMaxM, at the first step, as where it
+  /// had GPS until then. Places to which the odometry cannot have led it from there need not be told from its own.
+  bool start_is_known = false;
   TrackStart start = TrackStart::kSearch;
   /// Spreads the particles and searches again when measurements contradict the belief, and searches before the first
   /// claim if no search has ruled out other places (see TrackClaim). Without it a track converges by its particles

@@ -64,6 +64,7 @@ Tracker::Tracker(MapView map, TrackSettings settings)
       start_(region_of(map_, settings_.prior)),
       region_(region_of_flight(map_, settings_)) {
   assert(std::numbers::sqrt2 * settings_.beyond_map_m < TrackSearch::kAroundM);
+  assert(!settings_.start_is_known || (settings_.prior.circle && settings_.prior.circle->radius_m <= Reach::kMaxM));
   // In a larger prior, particles would not find the vehicle by themselves, and each step would read the whole map.
   if (settings_.start == TrackStart::kSearch) require_searchable(start_.area_km2(), settings_.max_search_km2);
 }

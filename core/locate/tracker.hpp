@@ -11,6 +11,7 @@
 #include "core/filter/filter.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/locate/map_view.hpp"
+#include "core/locate/reach.hpp"
 #include "core/locate/recent_frames.hpp"
 #include "core/locate/step_limits.hpp"
 #include "core/locate/track_claim.hpp"
@@ -49,6 +50,8 @@ struct TrackerState {
   RecentFrames recent;
   LastView last_view;
   LearnedMotion motion;
+  /// Of a track that began at a known place; nullopt = no other, or it has flown too far without being found.
+  std::optional<Reach> reach;
 
   /// nullopt = no measurement was accepted yet.
   std::optional<double> since_accepted_s(std::int64_t now_us) const;

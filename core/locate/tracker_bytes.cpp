@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3430'5354'4652ULL;  // "RFTS04"
+constexpr std::uint64_t kMagic = 0x3530'5354'4652ULL;  // "RFTS05"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -32,13 +32,18 @@ constexpr std::uint64_t kMagic = 0x3430'5354'4652ULL;  // "RFTS04"
 
 void pass_members(auto& io, auto& state) {
   auto& [filter, searched, last, measured, last_search, nadir_sigma_m, claim, accepted_time_us, recent, last_view,
-         motion] = state;
+         motion, reach] = state;
   io(searched, last->sequence, last->time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
-  io(motion.velocity, motion.turn_rate_rad_s, motion.odometry_is_wrong, motion.coasts, motion.coasted_s);
+  io(motion.velocity, motion.turn_rate_rad_s, motion.odometry_is_wrong, motion.coasts, motion.coasted_s, reach);
   io(last_view.seen, last_view.stands_still, last_view.earlier);
   io(filter.seed, filter.step, filter.resets, filter.slow_fit, filter.fast_fit, filter.particles);
   io(recent);
+}
+
+void pass_reach(auto& io, auto& reach) {
+  io(reach.position.east_m, reach.position.north_m, reach.heading, reach.radius_m, reach.heading_half_width,
+     reach.turn_rad2);
 }
 
 void pass_frame(auto& io, auto& frame) {
@@ -67,6 +72,7 @@ class Writer {
   void put(double number) { put(std::bit_cast<std::uint64_t>(number)); }
   void put(bool flag) { put(std::uint64_t{flag}); }
   void put(Angle angle) { put(angle.radians()); }
+  void put(const Reach& reach) { pass_reach(*this, reach); }
   void put(const BodyVelocity& velocity) { (*this)(velocity.forward_m_s, velocity.right_m_s); }
   template <typename Value>
   void put(const std::optional<Value>& value) {
@@ -122,6 +128,7 @@ class Reader {
     flag = word == 1;
   }
   void take(Angle& angle) { angle = Angle::radians(taken<double>()); }
+  void take(Reach& reach) { pass_reach(*this, reach); }
   void take(BodyVelocity& velocity) { (*this)(velocity.forward_m_s, velocity.right_m_s); }
   template <typename Value>
   void take(std::optional<Value>& value) {
@@ -195,10 +202,14 @@ bool is_valid(const LastView& view) {
   return std::ranges::all_of(view.seen, is_valid_view) && view.earlier.frames().size() <= 1 && is_valid(view.earlier);
 }
 
+bool is_valid(const Reach& reach) {
+  return reach.radius_m >= 0.0 && reach.heading_half_width >= Angle() && reach.turn_rad2 >= 0.0;
+}
+
 bool is_valid(const TrackerState& state) {
   return state.measured - 1 <= state.last->sequence && state.last_search <= state.measured &&
          state.nadir_sigma_m >= 0.0 && is_valid(state.claim) && is_valid(state.last_view) && is_valid(state.filter) &&
-         is_valid(state.recent);
+         is_valid(state.recent) && (!state.reach || is_valid(*state.reach));
 }
 
 }  // namespace

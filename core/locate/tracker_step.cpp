@@ -46,8 +46,11 @@ StepResult Tracker::Step::run() {
     // The particles do not include this error; it is added to the answer, once.
     state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
   }
+  const bool was_confirmed = state_.claim.confirmed;
   begin_or_move();
   if (features_) see();
+  // Frames that contradict the place may contradict what bounds it: the odometry, or that the start was known.
+  if (was_confirmed && !state_.claim.confirmed) state_.reach.reset();
   state_.last = StepStamp{input_.sequence, input_.time_us};
   state_.motion = motion_.learned();
   const std::vector<Cluster> clusters = clusters_of(filter_.particles());
@@ -63,6 +66,7 @@ StepResult Tracker::Step::run() {
 void Tracker::Step::begin_or_move() {
   if (is_first()) {
     filter_.start_uniformly(tracker_.start_);
+    if (begins_known()) state_.reach = Reach::within(tracker_.start_);
   } else {
     outcome_.missed_steps = motion_.told().lost_steps;
     move();
@@ -77,6 +81,11 @@ void Tracker::Step::move() {
     begin_claim_anew();
     state_.recent.clear();
     return;
+  }
+  if (state_.reach) motion_.carry(*state_.reach);
+  if (state_.reach && state_.reach->is_lost()) {
+    state_.reach.reset();
+    state_.claim.reopen();
   }
   const double kept = motion_.move(filter_);
   if (kept == 0.0) {
@@ -167,6 +176,7 @@ bool Tracker::Step::saw_nothing() const {
 void Tracker::Step::begin_claim_anew() {
   state_.claim = {};
   state_.searched = false;
+  state_.reach.reset();
 }
 
 }  // namespace roadfix

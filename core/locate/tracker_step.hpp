@@ -27,6 +27,7 @@ class Tracker::Step {
 
  private:
   bool is_first() const { return !state_.last; }
+  bool begins_known() const { return is_first() && settings_.start_is_known; }
   void begin_or_move();
   void move();
   void see();
@@ -42,11 +43,17 @@ class Tracker::Step {
   bool may_search() const;
   bool start_by_search();
   void look_around_if_due();
+  LookArea look_area(const GridPose& believed) const;
   void take(const Look& look, LookAge last);
   void search_if_due();
   bool wants_search() const;
   void recover();
+  void rely_on_reach(const Fix& anywhere, const FeatureMap& seen);
+  bool is_believed(const FixMode& mode) const;
+  bool confirms(const Fix& fix) const;
+  void settle(const Fix& fix, bool holds, const Prior& prior);
   void confirm(const Fix& fix);
+  void hold(const GridPose& found);
   std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen, double time_share);
 
   const Tracker& tracker_;

@@ -87,6 +87,9 @@ def parse_arguments(arguments):
         parser.error("--format and --send go together")
     if "map" in dict(options.track):
         parser.error("--track map: the map is that of --map")
+    if dict(options.track).get("known_start") and not options.state:
+        parser.error("--track known_start goes with --state: a client that is started again in flight would vouch for "
+                     "the place of the take-off without it")
     return options
 
 

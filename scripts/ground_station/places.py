@@ -3,8 +3,9 @@ import math
 
 FASTEST_M_S = 50.0
 WIDEST_M = 2e7  # of a prior: all of the Earth
+KNOWN_M = 150.0  # a known start is no wider
 DEGREE_M = 111_700.0  # at most
-PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg")
+PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "known_start")
 
 
 def told_place(request):
@@ -39,8 +40,13 @@ def without_prior(request):
     return {name: value for name, value in request.items() if name not in PRIOR}
 
 
-def around(known):
-    """The members of POST /v1/tracks that tell of a known place."""
-    if not known:
-        return {}
-    return {"lat": known["lat"], "lon": known["lon"], "radius_m": min(known["within_m"] + known["flown_m"], WIDEST_M)}
+def around(known, request):
+    """The members of POST /v1/tracks for a vehicle that is as far from a known place as it may have flown: what was told
+    of the start does not hold any more. A known start is one as long as it is narrow enough."""
+    members = without_prior(request)
+    if known:
+        radius_m = min(known["within_m"] + known["flown_m"], WIDEST_M)
+        members.update(lat=known["lat"], lon=known["lon"], radius_m=radius_m)
+        if request.get("known_start") and radius_m <= KNOWN_M:
+            members["known_start"] = True
+    return members

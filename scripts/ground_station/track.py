@@ -16,6 +16,7 @@ from travel import Travel, movement
 TRACK_IS_GONE = ("track-ended", "track-not-found", "map-replaced", "step-differs", "step-late")
 MOVEMENT = ("forward_m", "right_m", "turn_deg")
 SET_BACK_US = 2e6  # a clock that was set back by less will soon be where it was
+STILL_M = 5.0      # of which a start is told anyway
 KEPT_TRACKS = 8    # before this one, for their history: the service follows only so many for a client
 STEP = ("sequence", "status")  # of its answer
 
@@ -65,6 +66,7 @@ class Track:
         self._estimator = Estimator()
         self._travel = Travel()
         self._asked_places = 0  # of it that the step without an answer spans
+        self._start = None  # the place of the first call of step() or pass_by(), and when that was
 
     @property
     def id(self):
@@ -79,7 +81,7 @@ class Track:
         if self._of_another_process:
             self._recall(origin)
         if not self.id:
-            self._begin(origin, self._request)
+            self._begin(origin, self._request_at(place))
         elif origin != self._state["origin"]:
             self._take_origin(origin)
         try:
@@ -103,9 +105,19 @@ class Track:
         """The place, None where it is not known."""
         place = self._estimator.place(told)
         self._travel.add(place, covariance)
+        if self._start is None:
+            self._start = {"place": place, **moment()}
         if place != told:
             self._forget_place()  # nobody knows from where the estimator will go on
         return place
+
+    def _request_at(self, place):
+        """Of the first track, which may begin late, where the service was away: the start is as far behind as the
+        vehicle may have flown."""
+        begun = self._start["place"]
+        flown_m = length_m(movement(begun, place)) if begun and place else FASTEST_M_S * since(self._start)
+        known = told_place(self._request) if flown_m > STILL_M else None
+        return around(left(known, flown_m), self._request) if known else self._request
 
     def _take_origin(self, origin):
         """Of a place of which it is not known how the vehicle came there. Where it is not known either where it came
@@ -193,7 +205,7 @@ class Track:
         """Around the place that was known last, as far as the vehicle may have flown since, however far that is: what
         was told of the start need not hold the vehicle any more. `moved_m`: since the last step."""
         known = left(self._state["known"], max(moved_m, FASTEST_M_S * since(self._state)))
-        self._begin(origin, {**without_prior(self._request), **around(known)}, why)
+        self._begin(origin, around(known, self._request), why)
 
     def _moved_to(self, place):
         """{} where that is not known."""

@@ -43,12 +43,22 @@ Odometry parse_odometry(const Fields& fields) {
           Angle::degrees(fields.number("turn_deg", kDegrees)).wrapped()};
 }
 
+bool is_start_known(const Fields& fields) {
+  if (!fields.flag("known_start")) return false;
+  if (!fields.has("radius_m")) {
+    throw InvalidField("missing-parameter", "radius_m", "'known_start' goes with lat, lon and radius_m");
+  }
+  fields.number("radius_m", {0.0, Reach::kMaxM});
+  return true;
+}
+
 }  // namespace
 
 const std::vector<std::string>& track_members() {
   static const std::vector<std::string> kMembers =
       joined({{"map"},
               prior_fields(),
+              {"known_start"},
               {"particles", "seed"},
               {"speed_m_s", "speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s", "odometry_share"},
               {"wind_sigma_m_s", "scale_range", "nadir_sigma_m"}});
@@ -63,6 +73,7 @@ TrackRequest parse_track(const Fields& fields, const Limits& limits) {
   settings.filter.max_particles = particles;
   settings.filter.min_particles = std::min(settings.filter.min_particles, particles);
   settings.prior = parse_prior(fields);
+  settings.start_is_known = is_start_known(fields);
   settings.vehicle = parse_vehicle(fields);
   settings.seed =
       static_cast<std::uint64_t>(fields.optional_integer("seed", 0, std::numeric_limits<int>::max()).value_or(1));

@@ -63,6 +63,17 @@ TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
   EXPECT_GT(std::filesystem::file_size(file("film.gif")), 1000u);
 }
 
+TEST_F(FlyCommand, TakesNoWideCircleForAKnownStart) {
+  const std::string fly = "fly " + map() + " --footprint-m 200 --steps 2 --particles 300 --known-start";
+  EXPECT_EQ(roadfix(fly + " --start-radius 150 --start-heading-range 15").code, 0);
+  const ProgramResult wide = roadfix(fly + " --start-radius 151");
+  EXPECT_NE(wide.code, 0);
+  EXPECT_THAT(wide.err, HasSubstr("a --start-radius of 151 m is too wide"));
+  const ProgramResult nowhere = roadfix(fly);
+  EXPECT_NE(nowhere.code, 0);
+  EXPECT_THAT(nowhere.err, HasSubstr("--start-radius"));
+}
+
 TEST_F(FlyCommand, WritesNothingButItsFiguresToStandardOutput) {
   const ProgramResult flown =
       roadfix("fly " + map() + " --footprint-m 200 --steps 2 --particles 300 --json /dev/stdout");

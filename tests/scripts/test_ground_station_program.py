@@ -302,6 +302,17 @@ class Program(unittest.TestCase):
         self.assertEqual(program.returncode, 2)
         self.assertIn("--track map: the map is that of --map", program.stderr)
 
+    def test_vouches_for_a_start_only_where_it_would_know_of_it_after_a_restart(self):
+        with FakeService() as fake, tempfile.TemporaryDirectory() as folder:
+            known = ("--track", "lat=37.7", "lon=38.3", "radius_m=50", "known_start=true")
+            step = json.dumps({"time_us": 1, "north_m": 0, "east_m": 0, "yaw_deg": 0})
+            for state in ((), ("--state", os.path.join(folder, "flight.json"))):
+                program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--server", fake.url, "--map", "m", *known,
+                                          *state], input=step, capture_output=True, text=True, timeout=60)
+                self.assertEqual(program.returncode, 0 if state else 2, program.stderr)
+                self.assertEqual("goes with --state" in program.stderr, not state)
+            self.assertEqual([request.get("known_start") for request in fake.begun()], [True])
+
     def test_says_when_and_of_which_picture_something_is_wrong(self):
         refused = (422, {"code": "image-damaged", "detail": "no picture"})
         with FakeService([200, 200, refused]) as fake, tempfile.TemporaryDirectory() as folder:

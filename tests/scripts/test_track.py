@@ -262,6 +262,31 @@ class Steps(Followed):
                 self.assertAlmostEqual(begun.pop("radius_m"), radius_m + 500.0, delta=50.0 * 2.0)
                 self.assertEqual(begun, {"map": "m", "lat": lat, "lon": lon}, "nor is the heading that of the start")
 
+    def test_begin_their_first_track_as_far_from_the_start_as_they_have_flown_while_the_service_was_away(self):
+        told = {"map": "m", "lat": 1, "lon": 2, "radius_m": 40, "heading_deg": 90, "heading_range_deg": 5,
+                "known_start": True}
+        for flown_m, is_known in ((3.0, True), (60.0, True), (200.0, False)):
+            with FakeService() as fake:
+                track, _ = self.fly(fake, 0, request=told)
+                track.pass_by((0.0, 0.0, 0.0), None)
+                track.step((flown_m, 0.0, 0.0), {"time_us": 2})
+                begun = fake.begun()[-1]
+                if flown_m < 5.0:
+                    self.assertEqual(begun, told)
+                    continue
+                self.assertAlmostEqual(begun["radius_m"], 40.0 + flown_m)
+                self.assertEqual(begun.get("known_start", False), is_known)
+                self.assertNotIn("heading_deg", begun)
+
+    def test_begin_a_new_track_at_a_known_place_as_long_as_it_is_known_well_enough(self):
+        told = {"map": "m", "lat": 1, "lon": 2, "radius_m": 3, "known_start": True}
+        for flown_m, is_known in ((50.0, True), (500.0, False)):
+            with FakeService() as fake:
+                track, _ = self.fly(fake, 1, request=told)
+                track.step((flown_m, 0.0, 0.0), {"time_us": 2})
+                track.step((0.0, 0.0, 0.0), {"time_us": 3}, origin="restarted")
+                self.assertEqual(fake.begun()[-1].get("known_start", False), is_known)
+
     def test_begin_a_new_track_anywhere_where_no_place_was_ever_known(self):
         with FakeService() as fake:
             track, _ = self.fly(fake, 0, request={"map": "m", "wind_sigma_m_s": 5})

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
@@ -68,6 +69,36 @@ TEST_F(Campaigns, TheDefaultFilterFollowsAVehicleOverGoodFeatureMaps) {
   const auto results = run(campaign, map.zone);
   ASSERT_EQ(results[0].runs.size(), static_cast<std::size_t>(campaign.flights.number));
   for (const fly::Run& flight : results[0].runs) EXPECT_LT(flight.records.back().error_m, 25.0);
+}
+
+TEST_F(Campaigns, TellWhereFlightsBeginAsWellAsTheyAreAskedTo) {
+  std::vector<Prior> told;
+  campaign.localizer = [&](const std::string&, std::uint64_t, const Prior& start) {
+    told.push_back(start);
+    return make_localizer(map, TrackSettings::paper(100), {});
+  };
+  campaign.filters = {"default"};
+  campaign.flights.number = 20;
+  run(campaign, map.zone);
+  for (const Prior& start : told) EXPECT_FALSE(start.circle || start.box || start.heading);
+  told.clear();
+  campaign.start.radius_m = 50.0;
+  campaign.start.heading_half_width = Angle::degrees(15.0);
+  const auto flights = run(campaign, map.zone).at(0).runs;
+  double farthest_m = 0.0;
+  Angle most_turned;
+  for (std::size_t i = 0; i < flights.size(); ++i) {
+    const GridPose truth = flights[i].records.front().truth;
+    ASSERT_TRUE(told[i].circle && told[i].heading);
+    EXPECT_EQ(told[i].circle->radius_m, 50.0);
+    EXPECT_EQ(told[i].heading->half_width, Angle::degrees(15.0));
+    farthest_m = std::max(farthest_m, distance_m(map.zone.project(told[i].circle->centre), truth.position));
+    most_turned = std::max(most_turned, angular_distance(told[i].heading->centre, on_earth(truth, map.zone).heading));
+  }
+  EXPECT_LE(farthest_m, 50.0 + 1e-3);
+  EXPECT_LE(most_turned.degrees(), 15.0 + 1e-6);
+  EXPECT_GT(farthest_m, 35.0) << "of 20; all within half the area by a chance of one in a million";
+  EXPECT_GT(most_turned.degrees(), 7.5) << "likewise";
 }
 
 TEST_F(Campaigns, TellOneStepAfterAnotherHoweverManyFlyAtATime) {

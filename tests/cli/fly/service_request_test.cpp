@@ -28,10 +28,26 @@ FrameCamera camera() {
 }
 
 TEST(TrackRequest, HasTheAreaAsThePriorWhereThereIsOne) {
+  EXPECT_FALSE(track_request({}, 1, {}).contains("bbox"));
+  Prior start;
+  start.box = GeoBox{{-17.0, 179.5}, {-16.5, 180.5}};
+  EXPECT_EQ(track_request({}, 1, start).at("bbox"), (nlohmann::json{179.5, -17.0, 180.5, -16.5}));
+}
+
+TEST(TrackRequest, TellsWhatIsKnownOfTheStart) {
   ServicePlan plan;
-  EXPECT_FALSE(track_request(plan, 1).contains("bbox"));
-  plan.area = GeoBox{{-17.0, 179.5}, {-16.5, 180.5}};
-  EXPECT_EQ(track_request(plan, 1).at("bbox"), (nlohmann::json{179.5, -17.0, 180.5, -16.5}));
+  Prior start;
+  start.circle = GeoCircle{{37.76, 38.27}, 50.0};
+  start.heading = HeadingRange{Angle::degrees(-90.0), Angle::degrees(15.0)};
+  EXPECT_FALSE(track_request(plan, 1, start).contains("known_start"));
+  plan.filter.start_is_known = true;
+  const nlohmann::json request = track_request(plan, 1, start);
+  EXPECT_EQ(request.at("lat"), 37.76);
+  EXPECT_EQ(request.at("lon"), 38.27);
+  EXPECT_EQ(request.at("radius_m"), 50.0);
+  EXPECT_NEAR(request.at("heading_deg"), -90.0, 1e-9);
+  EXPECT_NEAR(request.at("heading_range_deg"), 15.0, 1e-9);
+  EXPECT_EQ(request.at("known_start"), true);
 }
 
 TEST(StepRequest, OfAFrameTellsWhatWasToldOfItsAttitudeAndNoMore) {

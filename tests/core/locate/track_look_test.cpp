@@ -17,7 +17,7 @@ class TrackLook : public ::testing::Test {
   Look look_from(GridPose believed, double flown_m = 0.0) const {
     Cluster belief;
     belief.mean = believed;
-    return look_around(search_, view_, frame_, belief, flown_m);
+    return look_around(search_, view_, frame_, belief, LookArea::around(believed, flown_m));
   }
   GridPose beside(double east_m) const {
     return {{truth_.position.east_m + east_m, truth_.position.north_m}, truth_.heading};
@@ -65,7 +65,9 @@ TEST_F(TrackLook, IsOpenAlongASingleStraightRoad) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U}) {
     std::mt19937_64 random(seed);
     const FeatureMap frame = testing::observed_at(road, belief.mean, 128, 128, 2.0, {0.2, 0.1}, random);
-    EXPECT_EQ(look_around(search, view, frame, belief, 0.0).outcome, Look::Outcome::kOpen) << "seed " << seed;
+    EXPECT_EQ(look_around(search, view, frame, belief, LookArea::around(belief.mean, 0.0)).outcome,
+              Look::Outcome::kOpen)
+        << "seed " << seed;
   }
 }
 
@@ -102,7 +104,8 @@ TEST_F(TrackLook, BearsOutNoPlaceFarFromTheVehicleHoweverUnsureTheBelief) {
   Cluster belief;
   belief.mean = beside(45.0);
   belief.covariance[0][0] = belief.covariance[1][1] = 50.0 * 50.0;
-  EXPECT_EQ(look_around(search_, view_, frame_, belief, 0.0).outcome, Look::Outcome::kOpen);
+  EXPECT_EQ(look_around(search_, view_, frame_, belief, LookArea::around(belief.mean, 0.0)).outcome,
+            Look::Outcome::kOpen);
 }
 
 TEST_F(TrackLook, FindsTheVehicleBesideAtTheScaleThatIsBelieved) {
@@ -112,7 +115,7 @@ TEST_F(TrackLook, FindsTheVehicleBesideAtTheScaleThatIsBelieved) {
   std::mt19937_64 random(4);
   FeatureMap frame = testing::observed_at(map_, truth_, 128, 128, 2.0 * std::exp(0.1), {0.15, 0.15}, random);
   frame.cell_m = 2.0;
-  const Look look = look_around(search_, view_, frame, belief, 0.0);
+  const Look look = look_around(search_, view_, frame, belief, LookArea::around(belief.mean, 0.0));
   ASSERT_EQ(look.outcome, Look::Outcome::kElsewhere);
   EXPECT_LT(distance_m(look.places.at(0).mean.position, truth_.position), 5.0);
   EXPECT_NEAR(look.places[0].log_scale, 0.1, 0.01);

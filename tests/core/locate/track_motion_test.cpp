@@ -43,6 +43,28 @@ TEST(StepMotion, FollowsOdometryAndRemembersTheVelocity) {
   EXPECT_FALSE(motion.learned().coasts);
 }
 
+TEST(StepMotion, CarriesAReachByTheOdometryAndWhatItDoesNotFeel) {
+  const Reach start{{500.0, 500.0}, Angle(), 30.0, Angle()};
+  const OdometryCovariance exact_turn{{{1.0, 0, 0}, {0, 4.0, 0}, {0, 0, 0}}};
+  VehicleNoise vehicle;
+  vehicle.wind = {3.0};
+  const auto carried = [&](const ToldMotion& told) {
+    Reach reach = start;
+    StepMotion(vehicle, kFlight, told, kFlewAt20MS).carry(reach);
+    return reach;
+  };
+  const Reach told = carried({Odometry{40.0, 0.0, {}}, exact_turn, 2.0});
+  EXPECT_EQ(told.position, (GridPoint{500.0, 540.0}));
+  EXPECT_NEAR(told.radius_m, 30.0 + 2.0 * 2.0 + 2.0 * 3.0 * 2.0, 1e-9) << "two sigma of odometry and of the wind";
+  const Reach lost = carried({Odometry{40.0, 0.0, {}}, exact_turn, 4.0, 1});
+  EXPECT_EQ(lost.position, (GridPoint{500.0, 580.0}));
+  EXPECT_GT(lost.radius_m, told.radius_m + 2.0 * 20.0) << "half of a lost step, 1 sigma";
+  const Reach untold = carried({{}, {}, 2.0});
+  EXPECT_EQ(untold.position, start.position);
+  EXPECT_GE(untold.radius_m, 30.0 + 2.0 * 40.0);
+  EXPECT_NEAR(untold.turned_at_most().degrees(), 180.0, 1e-9);
+}
+
 TEST(StepMotion, TakesNoVelocityFromAStepTooShortToTellOne) {
   const VehicleNoise vehicle;
   StepMotion motion(vehicle, kFlight, {Odometry{15.0, 0.0, {}}, {}, 0.001}, kFlewAt20MS);

@@ -7,7 +7,10 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
+#include <fstream>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string>
@@ -54,6 +57,7 @@ TrackerState flown() {
   earlier.nadir_heading_sigma = Angle::radians(0.01);
   state.last_view.earlier.keep(earlier);
   state.motion = {BodyVelocity{14.5, -0.25}, true, true};
+  state.reach = Reach{{600'700.5, 6'399'400.25}, Angle::degrees(60.0), 31.5, Angle::degrees(6.0), 0.01};
   return state;
 }
 
@@ -68,6 +72,7 @@ TrackerState blind() {
   state.recent.clear();
   state.last_view = {};
   state.motion = {};
+  state.reach.reset();
   return state;
 }
 
@@ -87,6 +92,15 @@ TEST(TrackerBytes, BringAStateBackToTheLastBit) {
     EXPECT_TRUE(back == state);
     EXPECT_TRUE(std::signbit(back.filter.particles.drift_east_m_s[0])) << "which == does not tell";
     EXPECT_EQ(to_bytes(back), to_bytes(state));
+  }
+}
+
+TEST(TrackerBytes, ThatTheFuzzTargetBeginsWithAreOfThisFormat) {
+  for (const char* name : {"state", "state_blind"}) {
+    std::ifstream in(std::filesystem::path(ROADFIX_TRACK_CORPUS) / name, std::ios::binary);
+    const std::string input{std::istreambuf_iterator<char>(in), {}};
+    ASSERT_GT(input.size(), 1U) << name;
+    EXPECT_EQ(refusal_of(std::as_bytes(std::span(input)).subspan(1)), "no error") << name;
   }
 }
 

@@ -40,6 +40,20 @@ TEST(TrackRequest, NeedsAMapAndNothingElse) {
   EXPECT_FALSE(settings.vehicle.nadir_sigma_m);
 }
 
+TEST(TrackRequest, MayVouchForItsStartWhereThatIsANarrowCircle) {
+  const json circle{{"lat", 37.76}, {"lon", 38.27}, {"radius_m", 150.0}, {"known_start", true}};
+  EXPECT_TRUE(settings_of(circle).start_is_known);
+  EXPECT_FALSE(settings_of({{"lat", 37.76}, {"lon", 38.27}, {"radius_m", 150.0}}).start_is_known);
+  EXPECT_FALSE(settings_of({{"known_start", false}}).start_is_known);
+  json wide = circle;
+  wide["radius_m"] = 151.0;
+  EXPECT_EQ(refused_track(wide), "parameter-out-of-range radius_m");
+  EXPECT_EQ(refused_track({{"known_start", true}}), "missing-parameter radius_m");
+  EXPECT_EQ(refused_track({{"bbox", {38.27, 37.76, 38.271, 37.761}}, {"known_start", true}}),
+            "missing-parameter radius_m");
+  EXPECT_EQ(refused_track({{"known_start", 1}}), "bad-parameter known_start");
+}
+
 TEST(TrackRequest, HasNoChoiceOfFilterOrStart) {
   EXPECT_EQ(refused_track({{"filter", "paper"}}), "unknown-field filter");
   EXPECT_EQ(refused_track({{"start", "uniform"}}), "unknown-field start");

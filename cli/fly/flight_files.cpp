@@ -52,9 +52,8 @@ std::string_view reason_of(const TrackEstimate& estimate) {
 
 std::string csv_header() {
   return "seed,filter,step,time_s,true_lat,true_lon,true_heading_deg,lat,lon,heading_deg,error_m,heading_error_deg,"
-         "weight,converged,reason,sigma_major_m,sigma_minor_m,ellipse_heading_deg,heading_sigma_deg,cov_ee_m2,cov_en_"
-         "m2,"
-         "cov_nn_m2,clusters,particles,measurement,doubt,resets,scale,scale_sigma,step_ms\n";
+         "weight,converged,reason,sigma_major_m,sigma_minor_m,ellipse_heading_deg,heading_sigma_deg,cov_ee_m2,"
+         "cov_en_m2,cov_nn_m2,clusters,particles,measurement,doubt,resets,scale,scale_sigma,step_ms\n";
 }
 
 std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& zone) {
@@ -64,16 +63,16 @@ std::string csv_lines(const std::string& filter, const Run& run, const UtmZone& 
     const LatLon truth = zone.unproject(r.truth.position);
     const PositionCovariance covariance = covariance_of(best.ellipse);
     lines += fmt::format(
-        "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{},{:.3f},{:.3f},{:.2f},{:."
-        "3f},"
-        "{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",
+        "{},{},{},{:.3f},{:.8f},{:.8f},{:.3f},{:.8f},{:.8f},{:.3f},{:.3f},{:.3f},{:.5f},{},{},{:.3f},{:.3f},{:.2f},"
+        "{:.3f},{:.4f},{:.4f},{:.4f},{},{},{},{:.4f},{},{:.5f},{:.5f},{:.3f}\n",
         run.seed, filter, r.sequence, r.time_s, truth.lat_deg, truth.lon_deg,
         zone.true_from_grid(r.truth.heading, r.truth.position).compass_degrees(), best.pose.position.lat_deg,
         best.pose.position.lon_deg, best.pose.heading.compass_degrees(), r.error_m, r.heading_error_deg, best.weight,
         r.estimate.converged() ? 1 : 0, reason_of(r.estimate), best.ellipse.sigma_m[0], best.ellipse.sigma_m[1],
         best.ellipse.heading.degrees(), best.heading_sigma.degrees(), covariance.east_east, covariance.east_north,
-        covariance.north_north, r.estimate.cluster_count, r.estimate.particles, to_string(r.estimate.measurement),
-        r.estimate.doubt, r.estimate.resets, best.scale, best.scale_sigma, r.step_ms);
+        covariance.north_north, r.estimate.cluster_count, r.estimate.particles,
+        word_of(kMeasurements, r.estimate.measurement), r.estimate.doubt, r.estimate.resets, best.scale,
+        best.scale_sigma, r.step_ms);
   }
   return lines;
 }

@@ -1,5 +1,7 @@
 #include "cli/fly/service_answer.hpp"
 
+#include <array>
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -27,20 +29,17 @@ TrackCluster cluster_of(const json& value) {
           value.at("scale_sigma")};
 }
 
-Measurement measurement_of(const std::string& word) {
-  for (const Measurement measurement : {Measurement::kNone, Measurement::kSearched, Measurement::kAccepted,
-                                        Measurement::kRejected, Measurement::kUseless, Measurement::kRepeated}) {
-    if (word == to_string(measurement)) return measurement;
-  }
-  throw unreadable("measurement " + word);
+template <typename E, std::size_t N>
+E value_by(const std::array<Word<E>, N>& words, const json& answer, const char* member) {
+  const std::string& word = answer.at(member).get_ref<const std::string&>();
+  const std::optional<E> value = value_of(words, word);
+  if (!value) throw unreadable(std::string(member) + " " + word);
+  return *value;
 }
 
 std::optional<Unclaimed> unclaimed_by(const json& answer) {
   if (answer.at("status") == "converged") return std::nullopt;
-  const std::string& word = answer.at("reason").get_ref<const std::string&>();
-  const std::optional<Unclaimed> why = value_of(kUnclaimed, word);
-  if (!why) throw unreadable("reason " + word);
-  return why;
+  return value_by(kUnclaimed, answer, "reason");
 }
 
 }  // namespace
@@ -55,7 +54,7 @@ TrackEstimate estimate_of(const json& answer) {
     estimate.cluster_count = answer.at("cluster_count");
     estimate.particles = answer.at("particles");
     estimate.resets = answer.at("resets");
-    estimate.measurement = measurement_of(answer.at("measurement"));
+    estimate.measurement = value_by(kMeasurements, answer, "measurement");
     estimate.mean_likelihood = answer.at("mean_likelihood");
     estimate.doubt = answer.at("doubt");
     const json& accepted = answer.at("since_accepted_s");

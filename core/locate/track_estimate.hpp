@@ -25,8 +25,12 @@ struct TrackCluster {
 
 /// What a step's feature map was used for; kRepeated = nothing, since the camera or its link has stopped (LastView).
 enum class Measurement { kNone, kSearched, kAccepted, kRejected, kUseless, kRepeated };
-/// "none", "searched" ...: the word for it in answers and files.
-const char* to_string(Measurement measurement);
+inline constexpr std::array<Word<Measurement>, 6> kMeasurements{{{"none", Measurement::kNone},
+                                                                 {"searched", Measurement::kSearched},
+                                                                 {"accepted", Measurement::kAccepted},
+                                                                 {"rejected", Measurement::kRejected},
+                                                                 {"useless", Measurement::kUseless},
+                                                                 {"repeated", Measurement::kRepeated}}};
 
 /// Why a step claims no place: the first condition of a claim that does not hold (docs/tracks.md, "When a place is
 /// claimed").

@@ -84,9 +84,13 @@ LookArea LookArea::of(const Reach& reach) {
   return {{reach.position, reach.heading}, reach.radius_m, reach.turned_at_most()};
 }
 
+std::optional<Prior> LookArea::prior(const MapView& map) const {
+  return prior_near(map, centre, radius_m, heading_half_width);
+}
+
 Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap& frame, const Cluster& belief,
                  const LookArea& area) {
-  const auto around = prior_near(map, area.centre, area.radius_m, area.heading_half_width);
+  const std::optional<Prior> around = area.prior(map);
   if (!around) return {};
   const FeatureMap seen = at_scale_of(belief, frame);
   const std::optional<Fix> fix =

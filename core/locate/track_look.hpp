@@ -51,6 +51,8 @@ struct LookArea {
   static LookArea around(const GridPose& belief, double flown_m);
   /// All of it.
   static LookArea of(const Reach& reach);
+  /// nullopt where it lies off the map.
+  std::optional<Prior> prior(const MapView& map) const;
 };
 
 /// kOpen if the area lies off the map or is too large to search.

@@ -106,49 +106,48 @@ bool Tracker::Step::wants_search() const {
 }
 
 void Tracker::Step::recover() {
+  const GridPose believed = heaviest_of(filter_.particles()).mean;
   const FeatureMap seen = state_.recent.laid_around(*features_);
   Prior prior;
   std::optional<Fix> fix = search_within(prior, seen, kWholeMapTimeShare);
   if (!fix) {
-    prior.circle =
-        GeoCircle{map_.zone.unproject(heaviest_of(filter_.particles()).mean.position), TrackSearch::kAroundM};
+    prior.circle = GeoCircle{map_.zone.unproject(believed.position), TrackSearch::kAroundM};
     fix = search_within(prior, seen, kAroundTimeShare);
   }
   if (!fix || fix->modes.empty()) return;
-  const bool is_sure = confirms(*fix) || fix->status == FixStatus::kFix;
+  const bool is_sure = confirms(*fix, believed) || fix->status == FixStatus::kFix;
   const bool holds = is_sure && search_.holds_at_other_scales(*fix, seen, prior);
-  if (state_.reach && !holds) return rely_on_reach(*fix, seen);
-  settle(*fix, holds, prior);
+  if (state_.reach && !holds) return rely_on_reach(*fix, seen, believed);
+  settle(*fix, holds, prior, believed);
 }
 
 /// A search of the whole map was not sure: what lies beyond reach need not be ruled out, and looks rule out what lies
 /// within it. Nothing is claimed where the roads fit far better elsewhere (the start was not where it was said to be,
 /// or the odometry is all wrong), nor at another size of the ground.
-void Tracker::Step::rely_on_reach(const Fix& anywhere, const FeatureMap& seen) {
-  const LookArea area = LookArea::around(heaviest_of(filter_.particles()).mean, 0.0);
-  const auto near = prior_near(map_, area.centre, area.radius_m, area.heading_half_width);
+void Tracker::Step::rely_on_reach(const Fix& anywhere, const FeatureMap& seen, const GridPose& believed) {
+  const std::optional<Prior> near = LookArea::around(believed, 0.0).prior(map_);
   if (!near) return state_.claim.reopen();
   const std::optional<Fix> here =
       search_.find(seen, *near, {.looks_beyond_prior = false, .search = {.scale_range = settings_.vehicle.scale_range}},
                    kHereTimeShare);
-  if (!here || here->modes.empty() || !is_believed(here->modes.front())) return state_.claim.reopen();
+  if (!here || here->modes.empty() || !is_at(believed, here->modes.front())) return state_.claim.reopen();
   const FixMode& best = anywhere.modes.front();
-  const bool fits_elsewhere = !is_believed(best) && (anywhere.probability > kProbabilityElsewhere ||
-                                                     here->modes.front().rho < kLeastShareOfBest * best.rho);
+  const bool fits_elsewhere = !is_at(believed, best) && (anywhere.probability > kProbabilityElsewhere ||
+                                                         here->modes.front().rho < kLeastShareOfBest * best.rho);
   state_.claim.set_confirmed(!fits_elsewhere && search_.holds_at_other_scales(*here, seen, *near));
 }
 
-bool Tracker::Step::is_believed(const FixMode& mode) const {
-  return is_same_place(on_grid(mode.pose, map_.zone), heaviest_of(filter_.particles()).mean);
+bool Tracker::Step::is_at(const GridPose& believed, const FixMode& mode) const {
+  return is_same_place(on_grid(mode.pose, map_.zone), believed);
 }
 
-bool Tracker::Step::confirms(const Fix& fix) const {
-  return fix.probability >= kProbabilityForClaim && is_believed(fix.modes.front());
+bool Tracker::Step::confirms(const Fix& fix, const GridPose& believed) const {
+  return fix.probability >= kProbabilityForClaim && is_at(believed, fix.modes.front());
 }
 
 /// `holds`: the search is sure of its best place, at whatever size of the ground.
-void Tracker::Step::settle(const Fix& fix, bool holds, const Prior& prior) {
-  if (confirms(fix)) {
+void Tracker::Step::settle(const Fix& fix, bool holds, const Prior& prior, const GridPose& believed) {
+  if (confirms(fix, believed)) {
     state_.claim.set_confirmed(holds);
     if (holds) hold(on_grid(fix.modes.front().pose, map_.zone));
   } else if (!holds) {

@@ -48,10 +48,10 @@ class Tracker::Step {
   void search_if_due();
   bool wants_search() const;
   void recover();
-  void rely_on_reach(const Fix& anywhere, const FeatureMap& seen);
-  bool is_believed(const FixMode& mode) const;
-  bool confirms(const Fix& fix) const;
-  void settle(const Fix& fix, bool holds, const Prior& prior);
+  void rely_on_reach(const Fix& anywhere, const FeatureMap& seen, const GridPose& believed);
+  bool is_at(const GridPose& believed, const FixMode& mode) const;
+  bool confirms(const Fix& fix, const GridPose& believed) const;
+  void settle(const Fix& fix, bool holds, const Prior& prior, const GridPose& believed);
   void confirm(const Fix& fix);
   void hold(const GridPose& found);
   std::optional<Fix> search_within(const Prior& prior, const FeatureMap& seen, double time_share);

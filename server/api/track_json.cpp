@@ -41,7 +41,7 @@ json to_json(const TrackEstimate& estimate) {
   answer["cluster_count"] = estimate.cluster_count;
   answer["particles"] = estimate.particles;
   answer["resets"] = estimate.resets;
-  answer["measurement"] = to_string(estimate.measurement);
+  answer["measurement"] = word_of(kMeasurements, estimate.measurement);
   answer["mean_likelihood"] = estimate.mean_likelihood;
   answer["doubt"] = estimate.doubt;
   answer["since_accepted_s"] = estimate.since_accepted_s ? json(*estimate.since_accepted_s) : json();

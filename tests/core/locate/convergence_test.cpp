@@ -112,7 +112,7 @@ TEST(Convergence, WantsNoPictureAtEveryStep) {
   Belief belief;
   for (const Measurement other : {Measurement::kNone, Measurement::kSearched, Measurement::kAccepted}) {
     belief.measurement = other;
-    EXPECT_EQ(belief.unclaimed(), std::nullopt) << to_string(other);
+    EXPECT_EQ(belief.unclaimed(), std::nullopt) << word_of(kMeasurements, other);
   }
 }
 

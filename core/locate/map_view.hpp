@@ -9,6 +9,7 @@
 
 #include "core/geodesy/utm.hpp"
 #include "core/grid/road_grid.hpp"
+#include "core/grid/terrain.hpp"
 #include "core/locate/map_id.hpp"
 #include "core/search/search_cache.hpp"
 
@@ -32,6 +33,8 @@ struct MapView {
   std::shared_ptr<SearchCache> searches = nullptr;
   /// Some of it is imagery and some road data, so that `imagery_reader` suits a part of the ground only.
   bool imagery_and_roads = false;
+  /// Heights of its ground; nullptr = the map has none.
+  std::shared_ptr<const Terrain> terrain = nullptr;
 };
 
 }  // namespace roadfix

@@ -19,6 +19,9 @@
 namespace roadfix {
 namespace {
 
+// A place of no more probability is not claimed, whatever the status.
+constexpr double kMostProbable = 0.5;
+
 FixMode to_geographic(const MapView& map, const FeatureMap& cells, const SearchMode& mode, double weight,
                       const Calibration& calibration) {
   Ellipse ellipse = ellipse_of(map, mode.pose.position, mode.covariance);
@@ -43,37 +46,22 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const GridPose
   return rho_at(map, own_frame, pose).value_or(0.0) < kLeastShare * rho_of_all;
 }
 
-// A place of no more probability is not claimed, whatever the status.
-constexpr double kMostProbable = 0.5;
-
-bool claims_a_place(const Fix& fix) {
-  const bool likely = fix.probability > kMostProbable && fix.complete;
-  return fix.status == FixStatus::kFix || likely;
-}
-
-void refuse(Fix& fix, const char* reason, std::string explanation) {
-  fix.status = FixStatus::kNoFix;
-  fix.reason = reason;
-  fix.explanation = std::move(explanation);
-  fix.probability = std::min(fix.probability, kMostProbable);
-  fix.modes.front().weight = fix.probability;
-}
-
 /// Refuses a likely place where the frame that is asked for, or a half of it, does not fit by itself.
 void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const std::optional<FeatureMap>& own_frame,
              const SearchMode& best) {
   const FeatureMap asked_for = own_frame ? in_cells_of(map, *own_frame) : cells;
   const FeatureMap frame = resampled(asked_for, asked_for.cell_m, best.scale);
   if (own_frame && contradicts(map, frame, best.pose, fix.modes.front().rho)) {
-    refuse(fix, "frames-contradict",
-           "the frames fit at one place together, but the one whose position is asked for does not fit there by "
-           "itself: check where the others were taken from, and that no frame or movement comes late");
+    refuse_place(fix, "frames-contradict",
+                 "the frames fit at one place together, but the one whose position is asked for does not fit there by "
+                 "itself: check where the others were taken from, and that no frame or movement comes late");
   } else if (const char* half = contradicting_half(map, frame, best.pose)) {
-    refuse(fix, "halves-contradict",
-           fmt::format("the roads fit best at one place, but the {} half of the frame does not fit there by itself: "
-                       "part of the picture may be older than the rest, or not of the ground; leave out frames that "
-                       "the decoder reports as damaged, and paint black what covers the ground",
-                       half));
+    refuse_place(
+        fix, "halves-contradict",
+        fmt::format("the roads fit best at one place, but the {} half of the frame does not fit there by itself: "
+                    "part of the picture may be older than the rest, or not of the ground; leave out frames that "
+                    "the decoder reports as damaged, and paint black what covers the ground",
+                    half));
   }
 }
 
@@ -146,6 +134,19 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   fix.searched_km2 = region.area_km2();
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;
+}
+
+bool claims_a_place(const Fix& fix) {
+  const bool likely = fix.probability > kMostProbable && fix.complete;
+  return fix.status == FixStatus::kFix || likely;
+}
+
+void refuse_place(Fix& fix, const char* reason, std::string explanation) {
+  fix.status = FixStatus::kNoFix;
+  fix.reason = reason;
+  fix.explanation = std::move(explanation);
+  fix.probability = std::min(fix.probability, kMostProbable);
+  fix.modes.front().weight = fix.probability;
 }
 
 }  // namespace roadfix

@@ -40,6 +40,7 @@ struct FixMode {
   Ellipse ellipse;
   Angle heading_sigma;
   std::int64_t observed_cells = 0;
+  std::optional<double> agl_m{};  ///< where it follows from the altitude: height above the ground of this place
 };
 
 struct Fix {
@@ -68,5 +69,10 @@ PoseRegion search_region(const MapView& map, const Prior& prior, const FixOption
 /// Throws InvalidInput for a prior that does not meet the map and for a feature map that cannot be used at all,
 /// LimitExceeded and Interrupted by the options.
 Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, const FixOptions& options);
+
+/// Whether somebody may take the best place for where the UAV is, whatever the status.
+bool claims_a_place(const Fix& fix);
+/// Makes it no_fix for that reason, its best place no likely one. There is a mode.
+void refuse_place(Fix& fix, const char* reason, std::string explanation);
 
 }  // namespace roadfix

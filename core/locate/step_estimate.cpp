@@ -25,6 +25,7 @@ TrackEstimate estimate_of(const Tracker& tracker, const TrackerState& state, con
   estimate.doubt = filter.doubt();
   estimate.since_accepted_s = state.since_accepted_s(estimate.time_us);
   estimate.odometry_is_wrong = state.motion.odometry_is_wrong;
+  estimate.agl_m = outcome.agl_m;
   estimate.missed_steps = outcome.missed_steps;
   return estimate;
 }

@@ -16,6 +16,7 @@ struct StepOutcome {
   Measurement measurement = Measurement::kNone;
   double mean_likelihood = 0.0;  ///< see TrackEstimate
   std::int64_t missed_steps = 0;
+  std::optional<double> agl_m;  ///< see TrackEstimate
   std::optional<Unclaimed> unclaimed = Unclaimed::kTooFewAgree;
 };
 

@@ -73,7 +73,8 @@ struct TrackEstimate {
   double doubt = 0.0;                      ///< how much worse late measurements fit than earlier ones, 0 to 1
   std::optional<double> since_accepted_s;  ///< nullopt = no measurement was accepted yet
   bool odometry_is_wrong = false;          ///< was found so, and a drift of it is learned
-  std::int64_t missed_steps = 0;           ///< sequence numbers left out before this step
+  std::optional<double> agl_m;    ///< where it follows from the altitude: the height above ground of what was seen
+  std::int64_t missed_steps = 0;  ///< sequence numbers left out before this step
   static constexpr std::size_t kMaxClusters = 8;
 
   /// Only then the first cluster is a position to fly on.

@@ -35,6 +35,21 @@ std::optional<Prior> prior_near(const MapView& map, const GridPose& pose, double
   return prior;
 }
 
+std::optional<double> mean_agl_m(const MapView& map, const Particles& particles, double above_sea_m) {
+  if (!map.terrain) return std::nullopt;
+  double sum = 0.0;
+  double weights = 0.0;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (particles.weight[i] <= 0.0) continue;
+    const auto ground_m = map.terrain->height_m({particles.east_m[i], particles.north_m[i]});
+    if (!ground_m || *ground_m >= above_sea_m) continue;
+    sum += particles.weight[i] * (above_sea_m - *ground_m);
+    weights += particles.weight[i];
+  }
+  if (weights <= 0.0) return std::nullopt;
+  return sum / weights;
+}
+
 std::vector<Proposal> proposals_of(const MapView& map, const Fix& fix, const FeatureMap& features) {
   constexpr double kWiden = 4.0;
   const double cell_at_the_edge = 1.0 / footprint_reach(features);

@@ -27,7 +27,7 @@ std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& pr
   options.search.threads = limits_.threads;
   options.search.deadline = limits_.deadline.after(time_share);
   options.calibration = settings_.calibration;
-  return locate(map_, features, prior, options);
+  return altitude_ ? locate_from(*altitude_, map_, features, prior, options) : locate(map_, features, prior, options);
 }
 
 bool TrackSearch::holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include "core/locate/fix.hpp"
+#include "core/locate/altitude.hpp"
 #include "core/locate/step_limits.hpp"
 #include "core/locate/track_settings.hpp"
 
@@ -15,6 +15,9 @@ class TrackSearch {
   /// All outlive it.
   TrackSearch(const MapView& map, const TrackSettings& settings, const StepLimits& limits)
       : map_(map), settings_(settings), limits_(limits) {}
+
+  /// From now on feature maps were seen from there: locate_from() instead of locate().
+  void see_from(const Altitude& altitude) { altitude_ = altitude; }
 
   /// locate() with the area, threads and calibration of the track in place of those in `options`, within a share of the
   /// time that the step has left. nullopt where the area is beyond the limit.
@@ -38,6 +41,7 @@ class TrackSearch {
   const MapView& map_;
   const TrackSettings& settings_;
   const StepLimits& limits_;
+  std::optional<Altitude> altitude_;
 };
 
 }  // namespace roadfix

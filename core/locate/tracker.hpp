@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/filter/filter.hpp"
+#include "core/locate/altitude.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/reach.hpp"
@@ -27,6 +28,8 @@ struct StepInput {
   std::optional<Odometry> odometry;              ///< since the step before; turns within [-180, 180] degrees
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
+  /// From where, if the size of what they show follows from that and the ground below the vehicle. The map has heights.
+  std::optional<Altitude> altitude = {};
 };
 
 /// Identifies a step; see StepInput.
@@ -75,6 +78,9 @@ class Tracker {
   /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted when
   /// asked to stop, and at the deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
+  /// Height above ground of a vehicle at that height above the sea after the step that led to the state, or before the
+  /// first one: that above the ground of the particles, or of what the prior allows. Throws as required_agl().
+  double agl_m(const TrackerState& state, double above_sea_m) const;
   /// At most `count` poses: every k-th particle, without those of no weight.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;
 

@@ -8,6 +8,7 @@
 #include "core/locate/particle_likelihoods.hpp"
 #include "core/locate/prepare.hpp"
 #include "core/locate/soft_map.hpp"
+#include "core/locate/track_geometry.hpp"
 
 namespace roadfix {
 namespace {
@@ -41,14 +42,12 @@ Tracker::Step::Step(const Tracker& tracker, const TrackerState& before, const St
                           : Filter(settings_.filter, motion_.region(), settings_.seed, limits.threads)) {}
 
 StepResult Tracker::Step::run() {
-  if (input_.features) {
-    features_ = in_cells_of(map_, *input_.features);
-    // The particles do not include this error; it is added to the answer, once.
-    state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
-  }
   const bool was_confirmed = state_.claim.confirmed;
   begin_or_move();
-  if (features_) see();
+  if (input_.features) {
+    take_in_features();
+    see();
+  }
   // Frames that contradict the place may contradict what bounds it: the odometry, or that the start was known.
   if (was_confirmed && !state_.claim.confirmed) state_.reach.reset();
   state_.last = StepStamp{input_.sequence, input_.time_us};
@@ -61,6 +60,20 @@ StepResult Tracker::Step::run() {
   TrackEstimate estimate = estimate_of(tracker_, state_, filter_, clusters, outcome_);
   state_.filter = filter_.state();
   return {std::move(state_), std::move(estimate)};
+}
+
+void Tracker::Step::take_in_features() {
+  FeatureMap seen = *input_.features;
+  if (input_.altitude) {
+    const double agl_m =
+        mean_agl_m(map_, filter_.particles(), input_.altitude->above_sea_m).value_or(input_.altitude->agl_m);
+    seen = seen_from(std::move(seen), *input_.altitude, agl_m);
+    search_.see_from({input_.altitude->above_sea_m, agl_m});
+    outcome_.agl_m = agl_m;
+  }
+  features_ = in_cells_of(map_, seen);
+  // The particles do not include this error; it is added to the answer, once.
+  state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
 }
 
 void Tracker::Step::begin_or_move() {

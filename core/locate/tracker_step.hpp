@@ -28,6 +28,7 @@ class Tracker::Step {
  private:
   bool is_first() const { return !state_.last; }
   bool begins_known() const { return is_first() && settings_.start_is_known; }
+  void take_in_features();
   void begin_or_move();
   void move();
   void see();
@@ -62,7 +63,7 @@ class Tracker::Step {
   const StepInput& input_;
   const StepLimits& limits_;
   TrackSearch search_;
-  std::optional<FeatureMap> features_;  ///< of the input, in cells of the map
+  std::optional<FeatureMap> features_;  ///< of the input, in cells of the map, in the size that the ground below has
   // The filter and the motion of the state are in `filter_` and `motion_` until the step ends.
   TrackerState state_;
   StepMotion motion_;

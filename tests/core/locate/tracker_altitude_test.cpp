@@ -1,0 +1,69 @@
+// Tracks of a vehicle that knows its height above the sea, over ground that is not level.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/core/locate/track_fixture.hpp"
+#include "tests/support/sloping_ground.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::Flight;
+
+class TrackFromAltitude : public testing::Track {
+ protected:
+  TrackFromAltitude() { view_.terrain = std::make_shared<const Terrain>(ground_.terrain()); }
+
+  /// As a client sends it who takes the vehicle to be `agl_m` above ground.
+  StepInput taken_from(StepInput step, const GridPose& truth, double agl_m) const {
+    step.altitude = Altitude{kAboveSeaM, agl_m};
+    step.features = ground_.taken_for(*std::move(step.features), truth.position, *step.altitude);
+    return step;
+  }
+  double true_agl_m(const GridPose& truth) const { return kAboveSeaM - ground_.height_m(truth.position); }
+
+  static constexpr double kAboveSeaM = 420.0;
+  testing::SlopingGround ground_{view_.extent, 200.0, 270.0};
+};
+
+TEST_F(TrackFromAltitude, FollowsTheHeightOfTheGroundBelow) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 3);
+  int converged = 0;
+  for (int i = 0; i < 40; ++i) {
+    const StepInput step = flight.step();
+    const double agl_m = tracker.agl_m(state_, kAboveSeaM);
+    const TrackEstimate estimate = advance(tracker, taken_from(step, flight.pose(), agl_m));
+    if (!estimate.converged()) continue;
+    ++converged;
+    EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
+    EXPECT_NEAR(estimate.agl_m.value(), true_agl_m(flight.pose()), 1.5) << "step " << i;
+  }
+  EXPECT_GE(converged, 20);
+}
+
+TEST_F(TrackFromAltitude, FindsNothingInTheSizeOfAnotherHeight) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 3);
+  for (int i = 0; i < 20; ++i) {
+    StepInput step = taken_from(flight.step(), flight.pose(), 150.0);
+    step.altitude.reset();
+    EXPECT_FALSE(advance(tracker, step).converged()) << "step " << i;
+  }
+}
+
+TEST_F(TrackFromAltitude, TellsTheHeightAboveTheGroundThatIsBelievedToBeBelow) {
+  TrackSettings near = settings();
+  near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 50.0};
+  const Tracker tracker(view_, near);
+  EXPECT_NEAR(tracker.agl_m({}, kAboveSeaM), true_agl_m(start_), 3.0) << "before the first step";
+  Flight flight(map_, start_, 3);
+  StepInput step;
+  step.time_us = 1;
+  advance(tracker, step);
+  EXPECT_NEAR(tracker.agl_m(state_, kAboveSeaM), true_agl_m(start_), 1.0) << "of the particles";
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -14,6 +14,7 @@ void print_mode(const FixMode& mode) {
       "  lat {:.6f} lon {:.6f}  heading {:.1f} +- {:.1f} deg  1 sigma {:.1f} x {:.1f} m  weight {:.3f}  rho {:.3f}\n",
       mode.pose.position.lat_deg, mode.pose.position.lon_deg, mode.pose.heading.compass_degrees(),
       mode.heading_sigma.degrees(), mode.ellipse.sigma_m[0], mode.ellipse.sigma_m[1], mode.weight, mode.rho);
+  if (mode.agl_m) fmt::print("    {:.0f} m above the ground there\n", *mode.agl_m);
 }
 
 /// By RFC 4180: a name may hold commas, quotes and line breaks.

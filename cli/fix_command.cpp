@@ -23,7 +23,7 @@
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
 #include "core/geodesy/latlon.hpp"
-#include "core/locate/fix.hpp"
+#include "core/locate/altitude.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -42,6 +42,7 @@ struct FixArguments {
   std::optional<double> heading_deg;
   double heading_range_deg = 180.0;
   std::string calibration;
+  std::optional<double> alt_m;
   FixOptions fix;
   std::optional<std::chrono::milliseconds> time_limit;
   bool as_json = false;
@@ -79,13 +80,22 @@ struct Search {
   Prior prior;
   FixOptions options;
   std::optional<std::chrono::milliseconds> time_limit;
+  FeatureInputOptions input;
+  std::optional<Altitude> altitude;  ///< of frames
 };
 
 Search search_of(const FixArguments& options, bool several) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // all pictures search the same map
   const std::size_t cache_bytes = several ? kSearchCacheBytes : 0;
-  Search search{view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit};
-  search_region(search.view, search.prior, options.fix);  // before the frame, in which roads are looked for
+  Search search{
+      view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit, options.input, {}};
+  // Before the frame, in which roads are looked for.
+  const PoseRegion region = search_region(search.view, search.prior, options.fix);
+  if (options.alt_m) {
+    const double agl_m = required_agl(search.view, region.box, *options.alt_m).middle_m();
+    search.input.frame.camera.agl_m = agl_m;
+    search.altitude = Altitude{*options.alt_m, agl_m};
+  }
   if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
   return search;
 }
@@ -95,12 +105,13 @@ Fix located(const Search& search, api::Features& input, OnProgress progress = {}
   options.own_frame = std::move(input.own_frame);
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);
-  return locate(search.view, input.map, search.prior, options);
+  return search.altitude ? locate_from(*search.altitude, search.view, input.map, search.prior, options)
+                         : locate(search.view, input.map, search.prior, options);
 }
 
 void fix_one(const FixArguments& options, const std::filesystem::path& picture) {
   const Search search = search_of(options, false);
-  api::Features input = FeatureInput(options.input, search.view).read(picture);
+  api::Features input = FeatureInput(search.input, search.view).read(picture);
   Progress progress("searching", "headings");
   const auto began = std::chrono::steady_clock::now();
   const Fix fix = located(search, input, [&](std::int64_t done, std::int64_t total) {
@@ -115,7 +126,7 @@ void fix_all(const FixArguments& options, const Pictures& pictures) {
   for (const auto& file : pictures.files) require_apart({options.csv}, {file});
   require_writable({options.csv});
   const Search search = search_of(options, pictures.several);
-  FeatureInput inputs(options.input, search.view);
+  FeatureInput inputs(search.input, search.view);
   std::string table = fix_columns();
   auto saved = std::chrono::steady_clock::now();
   const auto save = [&] {
@@ -196,6 +207,16 @@ void add_fix_command(CLI::App& app) {
       ->add_option("input", o->pictures, std::string(kInputMeaning) + "; several of them, and folders of PNG and JPEG")
       ->required();
   add_feature_input_options(*command, o->input);
+  command
+      ->add_option(
+          "--alt", o->alt_m,
+          "Height above the sea in metres, in place of --agl with --fov or --focal-px, where the map knows how "
+          "high its ground is (roadfix terrain)")
+      ->check(between(-1000.0, 50'000.0))
+      ->excludes("--agl")
+      ->excludes("--gsd")
+      ->excludes("--exif")
+      ->excludes("--cell");
   add_prior_options(*command, *o);
   command
       ->add_option("--confidence", o->fix.confidence,

@@ -78,8 +78,6 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
           ->excludes(gsd)
           ->excludes(fov)
           ->excludes(focal);
-  fov->needs(agl);
-  focal->needs(agl);
   add_degrees_option(command, "--roll", o.camera.roll,
                      "Roll of the camera in degrees, positive with the right side down; 0 = straight down");
   add_degrees_option(command, "--pitch", o.camera.pitch,
@@ -110,6 +108,8 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 }
 
 void require_frame_for(const FrameOptions& options) {
+  const bool tells_lens = options.camera.horizontal_fov || options.camera.focal_px;
+  if (tells_lens && !options.has_camera()) throw CLI::RequiredError("with --fov and --focal-px: --agl");
   if (options.border == Border::kBlackUnseen && !options.given())
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
   if ((options.camera.roll || options.camera.pitch) && !options.has_camera())

@@ -146,6 +146,8 @@ bool shows_ground(const Content& content) {
   return content.has_picture || fields.has("cells") || fields.has("cols") || fields.has("rows");
 }
 
+bool is_frame(const Fields& fields) { return fields.choice("kind", kIsFrame); }
+
 void require_nothing_seen(const Fields& fields) {
   for (const std::string& name : feature_fields()) {
     if (!fields.has(name)) continue;
@@ -166,7 +168,7 @@ std::optional<Angle> told_nadir_heading_sigma(const Fields& fields) {
 
 Features features_of(const Content& content, const Detection& detection, const Limits& limits) {
   Features features;
-  if (content.fields.choice("kind", kIsFrame)) {
+  if (is_frame(content.fields)) {
     require_frame(content.fields);
     features = detected(content, detection, limits);
   } else {

@@ -20,6 +20,9 @@ const std::vector<std::string>& picture_members();
 /// Whether the ground was seen, rather than nothing. A picture of no bytes was, and is refused when it is read.
 bool shows_ground(const Content& content);
 
+/// Whether the ground is shown by a camera's picture.
+bool is_frame(const Fields& fields);
+
 /// Throws InvalidField ("missing-parameter") for a field that describes what was seen, where nothing was sent: a
 /// picture that was forgotten is not to pass for a flight without one.
 void require_nothing_seen(const Fields& fields);

@@ -82,6 +82,8 @@ void Fields::add(json object, std::span<const std::string> known) {
   }
 }
 
+void Fields::set_number(const std::string& name, double value) { values_[name] = {value, false}; }
+
 Fields Fields::without(std::span<const std::string> left_out) const {
   Fields result;
   for (const auto& [name, value] : values_) {

@@ -75,6 +75,8 @@ class Fields {
   }
   /// The member of a JSON body as it is; nullptr where it is absent.
   const nlohmann::json* member(const std::string& name) const;
+  /// The field has that value from then on, as if it had been sent.
+  void set_number(const std::string& name, double value);
   Fields without(std::span<const std::string> left_out) const;
   /// Names and values of all but `left_out`, to compare requests by: the order in which they came does not count.
   std::string summary(std::span<const std::string> left_out) const;

@@ -10,14 +10,16 @@ namespace {
 using nlohmann::json;
 
 json mode_json(const FixMode& mode) {
-  return {{"pose", pose_json(mode.pose)},
-          {"scale", mode.scale},
-          {"weight", mode.weight},
-          {"rho", mode.rho},
-          {"sigma_m", mode.ellipse.sigma_m},
-          {"ellipse_heading_deg", mode.ellipse.heading.degrees()},
-          {"heading_sigma_deg", mode.heading_sigma.degrees()},
-          {"observed_cells", mode.observed_cells}};
+  json answer{{"pose", pose_json(mode.pose)},
+              {"scale", mode.scale},
+              {"weight", mode.weight},
+              {"rho", mode.rho},
+              {"sigma_m", mode.ellipse.sigma_m},
+              {"ellipse_heading_deg", mode.ellipse.heading.degrees()},
+              {"heading_sigma_deg", mode.heading_sigma.degrees()},
+              {"observed_cells", mode.observed_cells}};
+  if (mode.agl_m) answer["agl_m"] = *mode.agl_m;
+  return answer;
 }
 
 }  // namespace

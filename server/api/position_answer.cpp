@@ -65,12 +65,16 @@ const std::vector<std::string>& position_fields() {
   return kFields;
 }
 
+std::optional<double> told_altitude_m(const Fields& fields) {
+  return fields.optional_number("alt_m", {-1000.0, 50'000.0});
+}
+
 PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
   const Media& media = media_asked_for(request, fields, kFormats);
   PositionFormat format;
   format.encoding = static_cast<PositionEncoding>(&media - kFormats.data());
   format.type = media.type;
-  format.altitude_msl_m = fields.optional_number("alt_m", {-1000.0, 50'000.0});
+  format.altitude_msl_m = told_altitude_m(fields);
   format.camera_yaw = fields.optional_angle("camera_yaw_deg", kDegrees).value_or(Angle());
   format.satellites = fields.optional_integer("satellites", 0, 99).value_or(0);
   read_id(fields, "system", format.sender.system);

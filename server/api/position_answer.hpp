@@ -19,6 +19,9 @@ namespace roadfix::api {
 /// Names that say how an answer is given; they change nothing of what is found.
 const std::vector<std::string>& position_fields();
 
+/// Height above the sea ("alt_m").
+std::optional<double> told_altitude_m(const Fields& fields);
+
 enum class PositionEncoding { kJson, kGlobalPositionSensor, kCommandInt, kGpsInput, kMavproxy, kNmea };
 
 struct PositionFormat {

@@ -47,6 +47,7 @@ json to_json(const TrackEstimate& estimate) {
   answer["since_accepted_s"] = estimate.since_accepted_s ? json(*estimate.since_accepted_s) : json();
   answer["drifts"] = estimate.odometry_is_wrong;
   answer["missed_steps"] = estimate.missed_steps;
+  if (estimate.agl_m) answer["agl_m"] = *estimate.agl_m;
   return answer;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "server/api/altitude_request.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -35,14 +36,16 @@ api::Features features_of(const Service& service, const http::Request& request, 
 
 http::Response post_fix(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
-  const api::Content content =
-      api::read_content(request, joined({fix_fields(), api::flight_members()}), service.limits);
+  api::Content content = api::read_content(request, joined({fix_fields(), api::flight_members()}), service.limits);
   const api::PositionFormat format = api::parse_position_format(request, content.fields);
   const auto time_us = content.fields.optional_large_integer("time_us", 0);
   const Prior prior = api::parse_prior(content.fields);
   FixOptions options = api::parse_fix_options(content.fields, service.limits);
   const auto time_limit = api::parse_time_limit(content.fields);
-  search_region(map->view, prior, options);  // before the frame, which costs a turn among the searches
+  // Before the frame, which costs a turn among the searches.
+  const PoseRegion region = search_region(map->view, prior, options);
+  const auto altitude = api::take_altitude(
+      content.fields, [&](double above_sea_m) { return required_agl(map->view, region.box, above_sea_m).middle_m(); });
   const api::Features features = features_of(service, request, content, map->view);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
@@ -50,7 +53,9 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const SearchThreads::Share share(service.search_threads);
   options.search.threads = share.threads();
   options.search.deadline = api::search_end(request.deadline, hang_up.token()).within(time_limit);
-  const auto answer = api::to_json(locate(map->view, features.map, prior, options), features);
+  const Fix fix = altitude ? locate_from(*altitude, map->view, features.map, prior, options)
+                           : locate(map->view, features.map, prior, options);
+  const auto answer = api::to_json(fix, features);
   const std::string status = answer.at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", status));
   http::Response response =

@@ -10,6 +10,7 @@
 #include "core/units/fnv.hpp"
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
+#include "server/api/altitude_request.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_body.hpp"
@@ -132,6 +133,8 @@ http::Response take_step(const Service& service, const http::Request& request, P
   }
   const api::TimeLimit limit(request.deadline);
   if (api::shows_ground(step.content)) {
+    step.sent.input.altitude = api::take_altitude(
+        step.content.fields, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
     const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features =

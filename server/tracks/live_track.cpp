@@ -14,6 +14,8 @@ std::shared_ptr<const TrackerState> LiveTrack::last_state() const {
   return state_;
 }
 
+double LiveTrack::agl_m(double above_sea_m) const { return tracker_.agl_m(*last_state(), above_sea_m); }
+
 std::vector<GeoPose> LiveTrack::particles(std::size_t count) const {
   const std::shared_ptr<const TrackerState> state = last_state();
   return state->last ? tracker_.particles(*state, count) : std::vector<GeoPose>();

@@ -22,6 +22,8 @@ class LiveTrack {
   const Tracker& tracker() const { return tracker_; }
   /// After the last step. Waits for no step that is under way.
   std::shared_ptr<const TrackerState> last_state() const;
+  /// Tracker::agl_m() after the last step. Waits for no step that is under way.
+  double agl_m(double above_sea_m) const;
   /// After the last step, thinned to at most `count`; none before the first one. Waits for no step that is under way.
   std::vector<GeoPose> particles(std::size_t count) const;
 

@@ -8,6 +8,9 @@ namespace roadfix::schema {
 /// Statements that make the tables of an empty map file (schema/map.sql).
 std::string_view map_sql();
 
+/// Statements that make the tables of a map's terrain (schema/terrain.sql).
+std::string_view terrain_sql();
+
 /// Statements that make the tables of the track store where they are not there yet (schema/tracks.sql).
 std::string_view tracks_sql();
 

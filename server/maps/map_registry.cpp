@@ -64,7 +64,11 @@ bool says_the_same(const MapInfo& a, const MapInfo& b) {
   const auto alike = [](const SourceStatus& x, const SourceStatus& y) {
     return x.record == y.record && x.complete == y.complete && x.ingested_at == y.ingested_at && x.shift == y.shift;
   };
-  return a.version == b.version && a.pending == b.pending && std::ranges::equal(a.sources, b.sources, alike);
+  const bool same_terrain = a.terrain && b.terrain
+                                ? a.terrain->record == b.terrain->record && a.terrain->added_at == b.terrain->added_at
+                                : a.terrain.has_value() == b.terrain.has_value();
+  return a.version == b.version && a.pending == b.pending && same_terrain &&
+         std::ranges::equal(a.sources, b.sources, alike);
 }
 
 }  // namespace

@@ -36,6 +36,9 @@ std::string small_map() {
     writer.begin_source(source, {&block, 1}, false);
     testing::put_block(writer, "a", block, CellArray(kTileCells, kTileCells, kRoad));
     writer.finish_source("a");
+    Terrain terrain = Terrain::unknown({32.0, {6400, -64'000}, 300, 300});
+    terrain.codes.front() = terrain.codes.back() = Terrain::code_of(500.0);
+    writer.put_terrain(terrain, {.location = "heights.tif"});
   }
   std::stringstream bytes;
   bytes << std::ifstream(path, std::ios::binary).rdbuf();

@@ -12,6 +12,7 @@
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/shift_table.hpp"
 #include "tiles/store/source_table.hpp"
+#include "tiles/store/terrain_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
@@ -220,6 +221,7 @@ MapInfo read_info(Connection& map) {
   info.pending = count_pending(map);
   info.error_of_removed_m = error_of_removed_m(map);
   info.sources = SourceTable(map, zoom_of(info.settings.cell_m)).all();
+  info.terrain = read_terrain(map, info.extent);
   return info;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "core/geodesy/utm.hpp"
 #include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
+#include "core/grid/terrain.hpp"
 #include "core/units/provenance.hpp"
 
 namespace roadfix {
@@ -90,6 +92,24 @@ struct SourceStatus {
   bool is_damaged() const { return complete && blocks_done < blocks_total; }
 };
 
+/// As a map keeps them in memory, 32 MB: 130 x 130 km in the finest cells.
+inline constexpr std::int64_t kMostTerrainCells = std::int64_t{1} << 24;
+
+/// Where the heights of a map's ground came from. They have no registration error.
+struct TerrainRecord {
+  std::string location = {};  ///< paths as given, separated by ", "
+  Provenance provenance = {};
+  friend bool operator==(const TerrainRecord&, const TerrainRecord&) = default;
+};
+
+struct TerrainStatus {
+  TerrainRecord record;
+  std::string added_at = {};                    ///< RFC 3339
+  HeightRange heights = {};                     ///< the lowest and the highest
+  double known_share = 0.0;                     ///< of the map's extent, 0 to 1
+  std::shared_ptr<const Terrain> terrain = {};  ///< never null
+};
+
 /// The extent of a map that holds nothing: empty(), but finite, so that it has a centre and makes a grid.
 inline constexpr GridBox kNothingObserved{{0.0, 0.0}, {-1.0, -1.0}};
 
@@ -103,6 +123,7 @@ struct MapInfo {
   std::int64_t pending = 0;         ///< tiles of all levels that wait to be fused: an ingest was interrupted
   double error_of_removed_m = 0.0;  ///< 1 sigma per axis, of removed sources that pending tiles still show; else 0
   std::vector<SourceStatus> sources = {};
+  std::optional<TerrainStatus> terrain = {};
 };
 
 /// Of the sources of this name, complete or not, the one in force first.

@@ -11,6 +11,7 @@
 #include "core/units/error.hpp"
 #include "tiles/store/map_description.hpp"
 #include "tiles/store/map_file.hpp"
+#include "tiles/store/terrain_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_png.hpp"
 #include "tiles/store/tile_table.hpp"
@@ -41,6 +42,7 @@ class Verifier {
     check_pending();
     check_ledger();
     check_evidence();
+    check_terrain();
     for (int zoom = table_.finest_zoom(); zoom >= kCoarsestZoom; --zoom) check_level(zoom);
     check_summary();
     if (number(map_, "PRAGMA data_version") != at_start) {
@@ -129,6 +131,12 @@ class Verifier {
         report("evidence-corrupt", fmt::format("evidence of source '{}' column {} row {}: {}. {}", evidence.text(1),
                                                evidence.integer(2), evidence.integer(3), error.what(), kRepair));
       }
+    }
+  }
+
+  void check_terrain() {
+    for (const std::string& what : damage_of_terrain(map_)) {
+      report("terrain-corrupt", fmt::format("{}. {}", what, kRepair));
     }
   }
 

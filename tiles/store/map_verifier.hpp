@@ -27,9 +27,9 @@ struct MapVerdict {
 };
 
 /// Reads everything: the database structure, the tile lattice, every tile of evidence, every fused tile against the
-/// evidence, every overview against the level below, ancillary rows, ledger, extent and version. Throws what MapReader
-/// throws for files that cannot be opened as a map; everything else becomes a problem. Throws Interrupted
-/// ("work-stopped"), and InUse ("map-changed") when a writer changed the map meanwhile.
+/// evidence, every overview against the level below, the heights of the ground, ancillary rows, ledger, extent and
+/// version. Throws what MapReader throws for files that cannot be opened as a map; everything else becomes a problem.
+/// Throws Interrupted ("work-stopped"), and InUse ("map-changed") when a writer changed the map meanwhile.
 MapVerdict verify_map(const std::filesystem::path& path, const OnProgress& progress = {}, std::stop_token stop = {});
 
 }  // namespace roadfix

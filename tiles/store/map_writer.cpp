@@ -14,6 +14,7 @@
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/shift_table.hpp"
 #include "tiles/store/source_table.hpp"
+#include "tiles/store/terrain_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
 #include "tiles/store/tile_table.hpp"
 #include "tiles/store/writer_lock.hpp"
@@ -260,6 +261,26 @@ std::vector<std::string> MapWriter::repair(const OnProgress& progress, std::stop
   transaction.commit();
   s.fusion.drain(progress, stop);
   return lost;
+}
+
+void MapWriter::put_terrain(const Terrain& terrain, const TerrainRecord& record) {
+  Transaction transaction(state_->map, Transaction::Kind::kWrite);
+  roadfix::put_terrain(state_->map, terrain, record);
+  transaction.commit();
+}
+
+bool MapWriter::remove_terrain() {
+  Transaction transaction(state_->map, Transaction::Kind::kWrite);
+  const bool was_there = roadfix::remove_terrain(state_->map);
+  transaction.commit();
+  return was_there;
+}
+
+std::vector<std::string> MapWriter::repair_terrain() {
+  Transaction transaction(state_->map, Transaction::Kind::kWrite);
+  std::vector<std::string> damage = drop_damaged_terrain(state_->map);
+  transaction.commit();
+  return damage;
 }
 
 }  // namespace roadfix

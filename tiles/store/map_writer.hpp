@@ -89,6 +89,14 @@ class MapWriter {
   /// back meanwhile. Can be interrupted and repeated.
   std::vector<std::string> repair(const OnProgress& progress = {}, std::stop_token stop = {});
 
+  /// Stores the heights of the ground in place of those that the map has, in one transaction. The terrain must know a
+  /// cell and have at most kMostTerrainCells, on the lattice. Tiles and version of the map stay as they are.
+  void put_terrain(const Terrain& terrain, const TerrainRecord& record);
+  /// False where the map has none.
+  bool remove_terrain();
+  /// Drops tiles of heights that cannot be read, or all heights where nothing would be left. Returns what was wrong.
+  std::vector<std::string> repair_terrain();
+
  private:
   struct State;
   std::unique_ptr<State> state_;

@@ -29,11 +29,14 @@ constexpr bool on_lattice(TileIndex tile, int zoom) {
   return tile.col >= 0 && tile.col < matrix_width(zoom) && tile.row < 0 && tile.row >= -matrix_height(zoom);
 }
 
-/// Whether a row of one of the file's tables is a tile of a level of the pyramid that ends with `finest_zoom`.
+/// Whether a row of one of the file's tables is a tile of the level.
+constexpr bool in_matrix(int zoom, std::int64_t tile_row, std::int64_t tile_column) {
+  return tile_row >= 0 && tile_row < matrix_height(zoom) && tile_column >= 0 && tile_column < matrix_width(zoom);
+}
+
+/// Whether it is one of the pyramid that ends with `finest_zoom`.
 constexpr bool in_pyramid(std::int64_t zoom, std::int64_t tile_row, std::int64_t tile_column, int finest_zoom) {
-  if (zoom < kCoarsestZoom || zoom > finest_zoom) return false;
-  const int level = static_cast<int>(zoom);
-  return tile_row >= 0 && tile_row < matrix_height(level) && tile_column >= 0 && tile_column < matrix_width(level);
+  return zoom >= kCoarsestZoom && zoom <= finest_zoom && in_matrix(static_cast<int>(zoom), tile_row, tile_column);
 }
 
 /// Contribution of one tile to the version of a map: the sum over the finest tiles does not depend on their order.

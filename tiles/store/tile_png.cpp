@@ -20,6 +20,8 @@ namespace {
 
 PngShape shape_of(TileDepth depth) { return {kTileCells, kTileCells, 1, static_cast<int>(depth)}; }
 
+constexpr PngShape kHeights{kTileCells, kTileCells, 1, 16};
+
 std::vector<std::uint8_t> pack(std::span<const Cell> cells) {
   std::vector<std::uint8_t> pixels(2 * cells.size());
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -39,11 +41,11 @@ void unpack(std::span<const std::uint8_t> pixels, std::span<Cell> cells) {
   if (wrong != 0) throw CorruptData("tile-corrupt", "a value is neither 0..254 nor unobserved");
 }
 
-void read_pixels(std::span<const std::byte> png, TileDepth depth, std::span<std::uint8_t> pixels) {
-  if (read_grey_png(png, shape_of(depth), pixels)) return;
+void read_pixels(std::span<const std::byte> png, const PngShape& shape, std::span<std::uint8_t> pixels) {
+  if (read_grey_png(png, shape, pixels)) return;
   try {
     PngReader reader(png, PngOrigin::kOwn);
-    if (reader.shape() != shape_of(depth)) {
+    if (reader.shape() != shape) {
       throw CorruptData("tile-corrupt", "not 256 x 256 pixels of the expected depth");
     }
     reader.read(pixels);
@@ -79,13 +81,33 @@ std::vector<std::byte> encode_tile(const CellArray& cells, TileDepth depth) {
 CellArray decode_tile(std::span<const std::byte> png, TileDepth depth) {
   CellArray cells(kTileCells, kTileCells);
   if (depth == TileDepth::kEvidence) {
-    read_pixels(png, depth, cells.cells());
+    read_pixels(png, shape_of(depth), cells.cells());
   } else {
     std::vector<std::uint8_t> pixels(shape_of(depth).bytes());
-    read_pixels(png, depth, pixels);
+    read_pixels(png, shape_of(depth), pixels);
     unpack(pixels, cells.cells());
   }
   return cells;
+}
+
+std::vector<std::byte> encode_heights(std::span<const std::uint16_t> codes) {
+  std::vector<std::uint8_t> pixels(kHeights.bytes());
+  assert(2 * codes.size() == pixels.size());
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    pixels[2 * i] = static_cast<std::uint8_t>(codes[i] >> 8);
+    pixels[2 * i + 1] = static_cast<std::uint8_t>(codes[i] & 0xff);
+  }
+  return encode_grey_png(pixels, kHeights);
+}
+
+std::vector<std::uint16_t> decode_heights(std::span<const std::byte> png) {
+  std::vector<std::uint8_t> pixels(kHeights.bytes());
+  read_pixels(png, kHeights, pixels);
+  std::vector<std::uint16_t> codes(pixels.size() / 2);
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    codes[i] = static_cast<std::uint16_t>(pixels[2 * i] << 8 | pixels[2 * i + 1]);
+  }
+  return codes;
 }
 
 }  // namespace roadfix

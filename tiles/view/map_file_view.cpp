@@ -36,7 +36,8 @@ MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::
           registration_around(reader),
           [reader = std::move(reader)](const GridGeometry& geometry) { return reader->read(geometry); },
           search_cache_bytes > 0 ? std::make_shared<SearchCache>(search_cache_bytes) : nullptr,
-          shows_imagery_and_roads(info)};
+          shows_imagery_and_roads(info),
+          info.terrain ? info.terrain->terrain : nullptr};
 }
 
 MapView view_of_file(const std::filesystem::path& file, std::size_t search_cache_bytes) {

@@ -202,6 +202,28 @@ TEST(MapRegistry, NoticesThatASourceLiesBesideTheOthers) {
   EXPECT_EQ(registry.find("city")->view.registration_sigma_m({}), 12.0);
 }
 
+TEST(MapRegistry, NoticesThatTheHeightsOfTheGroundCameChangedOrWent) {
+  const TemporaryFolder folder;
+  make_map(folder / "city.gpkg", 1);
+  MapRegistry registry(folder.path(), kCache);
+  const auto before = registry.find("city");
+  EXPECT_EQ(before->view.terrain, nullptr);
+  const auto height = [&] {
+    registry.refresh();
+    const auto map = registry.find("city");
+    EXPECT_EQ(map->view.id.version, before->view.id.version);
+    return map->view.terrain ? map->view.terrain->cell_height_m(0, 0) : std::nullopt;
+  };
+  MapWriter writer(folder / "city.gpkg", roadfix::testing::settings_37n());
+  for (const double height_m : {600.0, 700.0}) {
+    writer.put_terrain({{32.0, {13'552, -130'640}, 1, 1}, {Terrain::code_of(height_m)}}, {.location = "heights.tif"});
+    ASSERT_TRUE(height()) << height_m;
+    EXPECT_NEAR(*height(), height_m, 0.1);
+  }
+  writer.remove_terrain();
+  EXPECT_FALSE(height());
+}
+
 TEST(MapRegistry, ServesTheOthersWhenOneIsBrokenAndSaysWhy) {
   const TemporaryFolder folder;
   make_map(folder / "good.gpkg", 1);

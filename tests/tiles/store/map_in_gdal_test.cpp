@@ -93,10 +93,18 @@ TEST(MapInGdalAndBack, OverviewsThatGdalHasBuiltAreMadeAnewByRepair) {
 TEST(MapInGdalAndBack, IsOneRasterAndNoVectors) {
   const TemporaryFolder folder;
   const auto path = folder / "m.gpkg";
-  { MapWriter writer(path, testing::settings_37n()); }
+  MapWriter writer(path, testing::settings_37n());
+  testing::ingest(writer, {"a", 1, testing::some_blocks(1)});
   GDALAllRegister();
-  const std::unique_ptr<GDALDataset> data(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
-  EXPECT_EQ(data == nullptr ? 0 : data->GetLayerCount(), 0);
+  for (const bool with_terrain : {false, true}) {
+    if (with_terrain) writer.put_terrain({{32.0, {13'552, -130'640}, 1, 1}, {8000}}, {.location = "heights.tif"});
+    const std::unique_ptr<GDALDataset> vectors(GDALDataset::Open(path.c_str(), GDAL_OF_VECTOR));
+    EXPECT_EQ(vectors == nullptr ? 0 : vectors->GetLayerCount(), 0);
+    const std::unique_ptr<GDALDataset> raster(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER));
+    ASSERT_NE(raster, nullptr);
+    EXPECT_EQ(raster->GetRasterCount(), 1);
+    EXPECT_EQ(raster->GetMetadata("SUBDATASETS"), nullptr);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(NorthAndSouth, MapInGdal, ::testing::Values(32637, 32734));

@@ -35,6 +35,19 @@ TEST(MapFileView, AMapFileAnswersWhereAFootprintWasSeen) {
   EXPECT_EQ(fix.map.version, view.id.version);
 }
 
+TEST(MapFileView, HasTheHeightsOfItsGroundWhereTheMapHasThem) {
+  const testing::TemporaryFolder folder;
+  const std::filesystem::path path = folder / "town.gpkg";
+  testing::write_map_file(path, testing::street_map(31, {2.0, {300'100, -3'200'050}, 100, 100}), 1.5);
+  EXPECT_EQ(view_of_file(path).terrain, nullptr);
+  Terrain terrain = Terrain::unknown({32.0, {18'756, -200'004}, 8, 8});
+  terrain.codes[9] = Terrain::code_of(812.0);
+  MapWriter::existing(path).put_terrain(terrain, {.location = "heights.tif"});
+  const MapView view = view_of_file(path);
+  ASSERT_NE(view.terrain, nullptr);
+  EXPECT_EQ(*view.terrain, terrain);
+}
+
 TEST(MapFileView, ASourceCountsForTheAccuracyOfTheGroundAroundItOnly) {
   const testing::TemporaryFolder folder;
   const std::filesystem::path path = folder / "town.gpkg";

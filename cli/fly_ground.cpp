@@ -145,6 +145,15 @@ fly::Kidnapping kidnapping_of(const FlyOptions& options, int steps) {
                                  kidnapping.step, steps));
 }
 
+fly::LevelFlight level_flight_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
+  if (!ground.recordings.empty() || !options.service.base.empty()) {
+    throw InvalidInput("option-without-effect",
+                       "--alt is for simulated flights that the library follows: leave it out");
+  }
+  required_agl(map, ground.box, *options.alt_m);
+  return {map.terrain, *options.alt_m, options.camera.agl_m, options.tells_alt};
+}
+
 }  // namespace
 
 MapView map_of(const FlyOptions& options) {
@@ -187,6 +196,7 @@ fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Gro
   const int steps = ground.recordings.empty() ? plan.steps : frames_of_the_longest(ground.recordings);
   if (!options.outage.empty()) plan.outage = outage_of(options, steps);
   if (!options.kidnap.empty()) plan.kidnapping = kidnapping_of(options, steps);
+  if (options.alt_m) plan.level = level_flight_of(options, map, ground);
   return plan;
 }
 

@@ -108,6 +108,18 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
       ->delimiter(',')
       ->expected(1, 2)
       ->check(positive());
+  command
+      .add_option("--alt", o.alt_m,
+                  "The vehicles keep this height above the sea over the ground of the map (roadfix terrain): a frame "
+                  "shows --footprint-m where they are --agl above ground")
+      ->group(kGroup)
+      ->check(between(-1000.0, 50'000.0));
+  command
+      .add_flag_callback(
+          "--no-alt", [&o] { o.tells_alt = false; },
+          "They are not told it, but that they are --agl above ground everywhere")
+      ->group(kGroup)
+      ->needs("--alt");
   add("--frame-every", o.plan.frame_every, "A frame in every k-th step")->check(positive());
   add("--missing", o.plan.missing_share, "Share of frames that are lost, at random")->check(between(0.0, 1.0));
   add("--outage", o.outage, "No frames from step FIRST to before step END")
@@ -140,7 +152,8 @@ void add_error_options(CLI::App& command, FlyOptions& o) {
   add("--altitude", o.camera.altitude, "Imagery: relative error of the altitude, in every frame");
   add("--altitude-bias", o.plan.altitude_bias,
       "Relative error of the altitude, once for a flight; recorded frames are as they are");
-  add("--agl", o.camera.agl_m, "Imagery: metres above ground, by which attitude moves what is seen");
+  add("--agl", o.camera.agl_m,
+      "Imagery: metres above ground, by which attitude moves what is seen; with --alt also of feature maps");
   add("--erase", o.quality.erase, "Feature maps: share of the road that is missing", 1.0);
   add("--invent", o.quality.invent, "Feature maps: roads that are not there, as a share of the true ones");
   add("--block", o.quality.block, "Feature maps: share of the footprint that is not observed", 0.9);

@@ -36,6 +36,8 @@ struct FlyOptions {
   int vehicles = 0;          ///< at the same time, in place of runs and jobs; 0 = not given
   fly::ServicePlan service;  ///< without a base the library is told, by the same filters
   std::string send = "features";
+  std::optional<double> alt_m;  ///< the vehicles keep this height above the sea
+  bool tells_alt = true;
   std::string json_file;
   std::string csv_file;
   std::string geojson_file;

@@ -51,12 +51,21 @@ class Sight {
 
   Observation at(int step, const GridPose& pose) const {
     Random random = camera_stream(seed_, step);
-    if (!frame_comes(plan_, step, random)) return {};
+    const auto size = size_of_ground(pose.position);
+    if (!frame_comes(plan_, step, random) || !size) return {};
     return sensor_.observe({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
-                           scale_, random);
+                           scale_ * *size, random);
   }
 
  private:
+  /// Over that which the sensor says; nullopt where the vehicle is not above ground of a known height.
+  std::optional<double> size_of_ground(GridPoint point) const {
+    if (!plan_.level) return 1.0;
+    const auto ground_m = plan_.level->terrain->height_m(point);
+    if (!ground_m || *ground_m >= plan_.level->above_sea_m) return std::nullopt;
+    return (plan_.level->above_sea_m - *ground_m) / plan_.level->agl_m;
+  }
+
   const FlightPlan& plan_;
   const Sensor& sensor_;
   std::uint64_t seed_;
@@ -97,6 +106,7 @@ Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Senso
     Observation seen_now = sight.at(step, vehicle.pose());
     input.features = std::move(seen_now.features);
     input.frame = std::move(seen_now.frame);
+    if (plan.level && plan.level->is_told) input.altitude = Altitude{plan.level->above_sea_m, plan.level->agl_m};
     flight.push_back({vehicle.pose(), std::move(input)});
     seen();
   }

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,15 @@ namespace roadfix::fly {
 struct Kidnapping {
   int step = 0;
   double distance_m = 0.0;  ///< by which the vehicle is somewhere else, unnoticed by its odometry
+};
+
+/// A vehicle that keeps its height above the sea over ground that is not level: what it sees is as large as its height
+/// above the ground there makes it.
+struct LevelFlight {
+  std::shared_ptr<const Terrain> terrain;  ///< never nullptr
+  double above_sea_m = 0.0;
+  double agl_m = 0.0;   ///< from which a frame shows as much ground as the sensor says, and which frames are made for
+  bool is_told = true;  ///< that height above the sea; else the vehicle is said to be agl_m above ground
 };
 
 struct FlightPlan {
@@ -36,6 +46,7 @@ struct FlightPlan {
   /// 1 sigma of the relative error of the altitude, once for the flight: so much larger is all ground that is seen than
   /// the vehicle takes it to be. Recorded frames are as they are.
   double altitude_bias = 0.0;
+  std::optional<LevelFlight> level;
 };
 
 /// What the vehicle tells at a step.

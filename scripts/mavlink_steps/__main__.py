@@ -83,8 +83,12 @@ def parse_arguments(arguments):
                         help="where the picture's upper edge points, clockwise from the nose, or from where "
                              "a gimbal says that it points (default: 0)")
     parser.add_argument("--by-air", action="store_true", help="movements by airspeed and heading")
-    parser.add_argument("--agl", type=parse_number, metavar="M",
+    ground = parser.add_mutually_exclusive_group()
+    ground.add_argument("--agl", type=parse_number, metavar="M",
                         help="height above ground, instead of what the autopilot tells")
+    ground.add_argument("--by-terrain", action="store_true",
+                        help="the map knows how high its ground is (roadfix terrain): tell the height above the sea "
+                             "alone")
     parser.add_argument("--takeoff-agl", type=parse_number, default=0.0, metavar="M",
                         help="how much higher than the ground in the pictures the take-off lay (default: 0)")
     parser.add_argument("--delay", type=parse_delay, default=0.0, metavar="S",

@@ -65,22 +65,33 @@ class Lines:
         place, attitude = self._vehicle.seen_at(captured)
         roll, pitch, yaw = self._camera_at(captured, attitude)
         camera_yaw = math.remainder(yaw - attitude[2], math.tau)
-        agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(captured), 2)
-        if agl_m <= 0.0:
-            raise Unknown(f"it was taken {agl_m:.1f} m above ground")
+        heights = self._heights(captured)
         time_us = self._clock.date_us(captured)
         if time_us <= self._last_us:
             raise Unknown("it was not taken after the one before it")
         step = {"time_us": time_us, "monotonic_s": round(captured, 6),
                 "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
-                "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3), "agl_m": agl_m,
+                "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3), **heights,
                 "camera_yaw_deg": round(math.degrees(camera_yaw), 3), "image": str(path),
                 "system": self._autopilot.system}
         if place is not None:
             step.update(north_m=round(place[0], 3), east_m=round(place[1], 3),
                         yaw_deg=round(math.degrees(yaw) % 360.0, 3))
+        return step
+
+    def _heights(self, captured):
+        """Throws Unknown."""
         alt_m = self._vehicle.alt_m(captured)
-        return step if alt_m is None else {**step, "alt_m": round(alt_m, 2)}
+        above_sea = {} if alt_m is None else {"alt_m": round(alt_m, 2)}
+        if self._options.by_terrain:
+            if alt_m is None:
+                raise Unknown("no height above the sea (ALTITUDE or VFR_HUD): ask the autopilot for one of them "
+                              "(SET_MESSAGE_INTERVAL)")
+            return above_sea
+        agl_m = round(self._options.agl if self._options.agl is not None else self._vehicle.agl_m(captured), 2)
+        if agl_m <= 0.0:
+            raise Unknown(f"it was taken {agl_m:.1f} m above ground")
+        return {"agl_m": agl_m, **above_sea}
 
     def _say_what_is_not_known(self, step):
         """Where it is not as before."""

@@ -259,6 +259,12 @@ class Program(unittest.TestCase):
         self.check_time(step, picture, 0.25)
         self.assertEqual(step["agl_m"], 90.5)
 
+    def test_tells_the_height_above_the_sea_alone_where_that_above_ground_is_the_map_s(self):
+        self.start("--by-terrain")
+        step = self.step_of(Path(self.folder.name, "1.jpg"))
+        self.assertEqual(step["alt_m"], 640.5)
+        self.assertNotIn("agl_m", step)
+
     def test_outlasts_a_folder_that_is_gone_for_a_moment(self):
         self.start()
         folder = Path(self.folder.name)

@@ -30,7 +30,8 @@ class LinesOfPictures(unittest.TestCase):
         self.addCleanup(self.time.__exit__)
         self.vehicle = Vehicle()
         self.clock = WallClock()
-        self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, delay=0.0, origin="o")
+        self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, by_terrain=False, delay=0.0,
+                                             origin="o")
         self.lines = self.lines_of(None)
 
     def lines_of(self, gimbal):
@@ -211,6 +212,19 @@ class LinesOfPictures(unittest.TestCase):
         self.fly(1.0, height_m=-0.5)
         self.lines.add("1.jpg", self.time.now - 0.05)
         self.assertEqual(self.printed(), ([], "1.jpg is left out: it was taken -0.5 m above ground\n"))
+
+    def test_tell_the_height_above_the_sea_alone_where_the_map_knows_the_ground(self):
+        self.options.agl, self.options.by_terrain = None, True
+        self.fly(1.0)
+        self.lines.add("1.jpg", self.time.now - 0.05)
+        self.assertEqual(self.printed(), ([], "1.jpg is left out: no height above the sea (ALTITUDE or VFR_HUD): ask "
+                                              "the autopilot for one of them (SET_MESSAGE_INTERVAL)\n"))
+        self.vehicle.hear("VFR_HUD", {"alt": 640.5, "airspeed": 10.0}, self.time.now)
+        self.fly(1.0)
+        self.lines.add("2.jpg", self.time.now - 0.05)
+        (step,), _ = self.printed()
+        self.assertEqual(step["alt_m"], 640.5)
+        self.assertNotIn("agl_m", step)
 
     def test_name_the_vehicle_to_which_positions_go(self):
         self.fly(3.0)

@@ -5,10 +5,12 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
+#include <memory>
 
 #include "cli/fly/area.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
+#include "tests/support/sloping_ground.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::fly {
@@ -152,6 +154,26 @@ TEST_F(Flights, OfAWrongAltitudeShowGroundOfAnotherSizeByTheSameFactorInEverySte
   EXPECT_EQ(scale_of(0.0), 1.0);
   EXPECT_NE(scale_of(0.05), 1.0);
   EXPECT_NEAR(scale_of(0.1) - 1.0, 2.0 * (scale_of(0.05) - 1.0), 1e-12);
+}
+
+TEST_F(Flights, AboveTheSeaShowGroundAsLargeAsItsHeightMakesIt) {
+  const testing::SlopingGround ground{kBox, 200.0, 260.0};
+  plan.level = LevelFlight{std::make_shared<const Terrain>(ground.terrain()), 460.0, 250.0};
+  for (const bool is_told : {true, false}) {
+    plan.level->is_told = is_told;
+    const Witness witness;
+    const auto pilot = make_random_pilot(kBox, plan.handling);
+    const Flight flight = fly(plan, kBox, *pilot, witness, 5, [] {});
+    ASSERT_EQ(witness.scales.size(), flight.size());
+    for (std::size_t i = 0; i < flight.size(); ++i) {
+      const double agl_m = 460.0 - ground.height_m(flight[i].truth.position);
+      EXPECT_NEAR(witness.scales[i], agl_m / 250.0, 0.002);
+      ASSERT_EQ(flight[i].input.altitude.has_value(), is_told);
+      if (is_told) {
+        EXPECT_EQ(flight[i].input.altitude->above_sea_m, 460.0);
+      }
+    }
+  }
 }
 
 TEST_F(Flights, OdometryDoesNotFeelTheWind) {

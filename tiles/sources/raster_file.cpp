@@ -86,7 +86,7 @@ void RasterFile::find_bands() {
   } else {
     colour_bands_ = {opaque[0]};
   }
-  GDALRasterBand& first = *dataset_->GetRasterBand(colour_bands_.front());
+  GDALRasterBand& first = first_band();
   signed_bytes_ = holds_signed_bytes(first);
   const GDALColorTable* table = colour_bands_.size() == 1 ? first.GetColorTable() : nullptr;
   for (int i = 0; table != nullptr && i < table->GetColorEntryCount(); ++i) {
@@ -101,20 +101,18 @@ void RasterFile::find_bands() {
 }
 
 std::optional<ValueRange> RasterFile::declared_range() const {
-  GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
+  GDALRasterBand& band = first_band();
   if (band.GetRasterDataType() != GDT_Byte || signed_bytes_) return std::nullopt;
   const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
   const int count = bits != nullptr ? std::clamp(std::atoi(bits), 1, 8) : 8;
   return ValueRange{0.0, static_cast<double>((1 << count) - 1)};
 }
 
-bool RasterFile::holds_integers() const {
-  return GDALDataTypeIsInteger(dataset_->GetRasterBand(colour_bands_.front())->GetRasterDataType()) != 0;
-}
+bool RasterFile::holds_integers() const { return GDALDataTypeIsInteger(first_band().GetRasterDataType()) != 0; }
 
 std::optional<int> RasterFile::overview_for(double reduction) const {
   if (signed_bytes_) return std::nullopt;  // overviews do not tell that theirs are
-  GDALRasterBand& band = *dataset_->GetRasterBand(colour_bands_.front());
+  GDALRasterBand& band = first_band();
   std::optional<int> best;
   double best_factor = 1.0;
   for (int i = 0; i < band.GetOverviewCount(); ++i) {
@@ -165,6 +163,11 @@ RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
   return result;
 }
 
+RasterPixels RasterFile::read_numbers(cv::Rect window) {
+  const cv::Mat numbers = read_bands(window, CV_32F, GDT_Float32);
+  return {numbers, read_validity(window, numbers)};
+}
+
 cv::Mat RasterFile::read_stored(cv::Rect window) {
   return declared_range() ? read_bands(window, CV_8U, GDT_Byte) : read_bands(window, CV_32F, GDT_Float32);
 }
@@ -188,8 +191,7 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
 
 cv::Mat RasterFile::read_alpha(cv::Rect window) {
   const auto turn = take_turn();
-  GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_)
-                                         : dataset_->GetRasterBand(colour_bands_.front())->GetMaskBand();
+  GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_) : first_band().GetMaskBand();
   const GdalMessages messages;
   cv::Mat alpha(window.size(), CV_32FC1);
   if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, alpha.data, window.width, window.height,
@@ -233,8 +235,7 @@ std::vector<cv::Rect> RasterFile::sample_windows() const { return spread_windows
 std::vector<float> RasterFile::sample_values() {
   std::vector<float> values;
   for (const cv::Rect& window : sample_windows()) {
-    const cv::Mat raw = read_bands(window, CV_32F, GDT_Float32);
-    const cv::Mat valid = read_validity(window, raw);
+    const auto [raw, valid] = read_numbers(window);
     for (int row = 0; row < raw.rows; ++row) {
       for (int col = 0; col < raw.cols; ++col) {
         if (valid.at<std::uint8_t>(row, col) == 0) continue;
@@ -248,7 +249,7 @@ std::vector<float> RasterFile::sample_values() {
 
 float RasterFile::largest_value(float enough) {
   float largest = 0.0F;
-  for (const cv::Rect& window : windows_of_blocks(*dataset_->GetRasterBand(colour_bands_.front()))) {
+  for (const cv::Rect& window : windows_of_blocks(first_band())) {
     const cv::Mat raw = read_stored(window);
     largest = std::max(largest, static_cast<float>(extremes(raw, read_validity(window, raw)).high));
     if (largest > enough) break;

@@ -37,12 +37,12 @@ struct ValueRange {
 
 /// Pixels of a window and which of them hold something.
 struct RasterPixels {
-  cv::Mat values;  ///< CV_8UC3 (BGR) or CV_8UC1
+  cv::Mat values;  ///< CV_8UC3 (BGR) or CV_8UC1; of read_numbers() CV_32F
   cv::Mat valid;   ///< CV_8UC1, 0 or 255
 };
 
-/// Several threads may call read() and read_opacity() once full_opacity() is known, which take turns with the file; all
-/// else that reads it needs take_turn() there.
+/// Several threads may call read(), read_numbers() and read_opacity() once full_opacity() is known, which take turns
+/// with the file; all else that reads it needs take_turn() there.
 class RasterFile {
  public:
   /// Throws NotFound, InvalidInput ("source-unreadable", "image-without-bands", "image-without-georeference").
@@ -52,6 +52,8 @@ class RasterFile {
   const std::string& path() const { return path_; }
   const OGRSpatialReference& crs() const { return crs_; }
   GDALDataset& dataset() const { return *dataset_; }
+  /// The one of grey; of colours that of blue.
+  GDALRasterBand& first_band() const { return *dataset_->GetRasterBand(colour_bands_.front()); }
   cv::Size size() const { return {dataset_->GetRasterXSize(), dataset_->GetRasterYSize()}; }
   /// 3 for colour and palettes, 1 for grey.
   int channels() const { return palette_.empty() && colour_bands_.size() < 3 ? 1 : 3; }
@@ -73,6 +75,8 @@ class RasterFile {
   /// The window must lie within the image. Throws CorruptData "image-unreadable-block", and what require_shares() of
   /// road_values.hpp throws.
   RasterPixels read(cv::Rect window, const ValueRange& range);
+  /// Values as the file stores them: of a palette the indices. Throws CorruptData as read().
+  RasterPixels read_numbers(cv::Rect window);
   /// Value of the alpha band where all is opaque, 1 without. Of more than 8 bits by the largest value that is sampled:
   /// programs widen pictures without their alpha.
   double full_opacity();

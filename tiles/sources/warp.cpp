@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
+#include <vector>
 
 namespace roadfix {
 namespace {
@@ -78,19 +80,25 @@ cv::Rect source_window(const PixelCoordinates& coordinates, cv::Size image, int 
   return {from, to};
 }
 
-/// Values weighted by validity, and the weight, both averaged over reduction x reduction pixels.
-void reduce(RasterPixels& pixels, int reduction) {
-  pixels.values.setTo(cv::Scalar::all(0), pixels.valid == 0);
+/// Values times their weights, and these: of the type of the values, the largest one where all of a pixel is valid.
+struct Weighted {
+  cv::Mat values;
+  cv::Mat weights;
+};
+
+/// Both averaged over reduction x reduction pixels.
+void reduce(Weighted& pixels, int reduction) {
+  pixels.values.setTo(cv::Scalar::all(0), pixels.weights == 0);
   if (reduction == 1) return;
   const cv::Size reduced((pixels.values.cols + reduction - 1) / reduction,
                          (pixels.values.rows + reduction - 1) / reduction);
   const int right = reduced.width * reduction - pixels.values.cols;
   const int bottom = reduced.height * reduction - pixels.values.rows;
   cv::Mat padded;
-  cv::copyMakeBorder(pixels.values, padded, 0, bottom, 0, right, cv::BORDER_CONSTANT, cv::Scalar::all(0));
-  cv::resize(padded, pixels.values, reduced, 0, 0, cv::INTER_AREA);
-  cv::copyMakeBorder(pixels.valid, padded, 0, bottom, 0, right, cv::BORDER_CONSTANT, cv::Scalar::all(0));
-  cv::resize(padded, pixels.valid, reduced, 0, 0, cv::INTER_AREA);
+  for (cv::Mat* each : {&pixels.values, &pixels.weights}) {
+    cv::copyMakeBorder(*each, padded, 0, bottom, 0, right, cv::BORDER_CONSTANT, cv::Scalar::all(0));
+    cv::resize(padded, *each, reduced, 0, 0, cv::INTER_AREA);
+  }
 }
 
 void fill(const cv::Mat& values, const cv::Mat& weights, cv::Mat target, cv::Mat observed) {
@@ -111,18 +119,43 @@ void fill(const cv::Mat& values, const cv::Mat& weights, cv::Mat target, cv::Mat
   }
 }
 
-void warp_piece(const PlacedRaster& raster, cv::Point2d corner, int reduction, double gsd_m, cv::Mat target,
-                cv::Mat observed) {
-  const PixelCoordinates coordinates(raster.georeference, corner, gsd_m, target.size());
-  const cv::Rect window = source_window(coordinates, raster.file.size(), reduction);
-  if (window.empty()) return;
-  RasterPixels pixels = raster.file.read(window, raster.range);
-  if (raster.collar != nullptr) raster.collar->clear(window, pixels);
-  if (cv::countNonZero(pixels.valid) == 0) return;
+/// A part of the ground that takes about a megapixel of source.
+struct Piece {
+  cv::Rect pixels;
+  cv::Point2d corner;  ///< the north-western one on the plane
+};
+
+/// Pixels of the source that become one, a power of two on a side.
+int reduction_for(double gsd_m, double source_gsd_m) {
+  return 1 << std::clamp(static_cast<int>(std::lround(std::log2(gsd_m / source_gsd_m))), 0, 10);
+}
+
+std::vector<Piece> pieces_of(const GridBox& box, cv::Size size, double gsd_m, int reduction) {
+  const int side = std::max(1, kSourcePiecePx / reduction);
+  std::vector<Piece> pieces;
+  for (int row = 0; row < size.height; row += side) {
+    for (int col = 0; col < size.width; col += side) {
+      pieces.push_back({cv::Rect(col, row, side, side) & cv::Rect({0, 0}, size),
+                        {box.min.east_m + col * gsd_m, box.max.north_m - row * gsd_m}});
+    }
+  }
+  return pieces;
+}
+
+/// What `read` gives of windows of a raster of that size, on the pixels of the piece; nullopt where it knows nothing of
+/// them.
+template <typename Read>
+std::optional<Weighted> warped(const Georeference& georeference, cv::Size raster, const Read& read, const Piece& piece,
+                               double gsd_m, int reduction) {
+  const PixelCoordinates coordinates(georeference, piece.corner, gsd_m, piece.pixels.size());
+  const cv::Rect window = source_window(coordinates, raster, reduction);
+  if (window.empty()) return std::nullopt;
+  Weighted pixels = read(window);
+  if (cv::countNonZero(pixels.weights) == 0) return std::nullopt;
   reduce(pixels, reduction);
-  cv::Mat map(target.size(), CV_32FC2);
-  for (int row = 0; row < target.rows; ++row) {
-    for (int col = 0; col < target.cols; ++col) {
+  cv::Mat map(piece.pixels.size(), CV_32FC2);
+  for (int row = 0; row < map.rows; ++row) {
+    for (int col = 0; col < map.cols; ++col) {
       const cv::Point2d p = coordinates.at(col, row);
       const double x = (p.x - window.x) / reduction - 0.5;
       const double y = (p.y - window.y) / reduction - 0.5;
@@ -132,26 +165,57 @@ void warp_piece(const PlacedRaster& raster, cv::Point2d corner, int reduction, d
           near ? cv::Point2f(static_cast<float>(x), static_cast<float>(y)) : cv::Point2f(-10.0F, -10.0F);
     }
   }
-  cv::Mat values;
-  cv::Mat weights;
-  cv::remap(pixels.values, values, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar::all(0));
-  cv::remap(pixels.valid, weights, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT, cv::Scalar::all(0));
-  if (values.channels() == 3 && target.channels() == 1) cv::cvtColor(values, values, cv::COLOR_BGR2GRAY);
-  fill(values, weights, target, observed);
+  Weighted result;
+  cv::remap(pixels.values, result.values, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+            cv::Scalar::all(0));
+  cv::remap(pixels.weights, result.weights, map, cv::noArray(), cv::INTER_LINEAR, cv::BORDER_CONSTANT,
+            cv::Scalar::all(0));
+  return result;
 }
 
 }  // namespace
 
 void warp_into(const PlacedRaster& raster, const GridBox& box, GroundImage& image) {
-  const double ratio = image.gsd_m / raster.georeference.gsd_m();
-  const int reduction = 1 << std::clamp(static_cast<int>(std::lround(std::log2(ratio))), 0, 10);
-  const int piece = std::max(1, kSourcePiecePx / reduction);
-  const cv::Rect whole({0, 0}, image.pixels.size());
-  for (int row = 0; row < whole.height; row += piece) {
-    for (int col = 0; col < whole.width; col += piece) {
-      const cv::Rect part = cv::Rect(col, row, piece, piece) & whole;
-      const cv::Point2d corner(box.min.east_m + col * image.gsd_m, box.max.north_m - row * image.gsd_m);
-      warp_piece(raster, corner, reduction, image.gsd_m, image.pixels(part), image.observed(part));
+  const int reduction = reduction_for(image.gsd_m, raster.georeference.gsd_m());
+  const auto read = [&](cv::Rect window) {
+    RasterPixels pixels = raster.file.read(window, raster.range);
+    if (raster.collar != nullptr) raster.collar->clear(window, pixels);
+    return Weighted{pixels.values, pixels.valid};
+  };
+  for (const Piece& piece : pieces_of(box, image.pixels.size(), image.gsd_m, reduction)) {
+    auto part = warped(raster.georeference, raster.file.size(), read, piece, image.gsd_m, reduction);
+    if (!part) continue;
+    cv::Mat target = image.pixels(piece.pixels);
+    if (part->values.channels() == 3 && target.channels() == 1) {
+      cv::cvtColor(part->values, part->values, cv::COLOR_BGR2GRAY);
+    }
+    fill(part->values, part->weights, target, image.observed(piece.pixels));
+  }
+}
+
+void warp_into(const PlacedNumbers& raster, const GridBox& box, GroundNumbers& ground) {
+  const int reduction = reduction_for(ground.gsd_m, raster.gsd_m);
+  const auto read = [&](cv::Rect window) {
+    Weighted pixels;
+    const RasterPixels stored = raster.read(window);
+    pixels.values = stored.values;
+    stored.valid.convertTo(pixels.weights, CV_32F, 1.0 / 255.0);
+    return pixels;
+  };
+  for (const Piece& piece : pieces_of(box, ground.sums.size(), ground.gsd_m, reduction)) {
+    const auto part = warped(raster.georeference, raster.size, read, piece, ground.gsd_m, reduction);
+    if (!part) continue;
+    cv::Mat sums = ground.sums(piece.pixels);
+    cv::Mat weights = ground.weights(piece.pixels);
+    for (int row = 0; row < sums.rows; ++row) {
+      for (int col = 0; col < sums.cols; ++col) {
+        const float weight = part->weights.at<float>(row, col);
+        if (weight <= 0.0F) continue;
+        float& known = weights.at<float>(row, col);
+        const float added = std::min(weight, 1.0F - known);
+        sums.at<float>(row, col) += added * part->values.at<float>(row, col) / weight;
+        known += added;
+      }
     }
   }
 }

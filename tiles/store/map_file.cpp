@@ -128,15 +128,6 @@ void leave_wal_mode(Connection& map) {
   }
 }
 
-GridBox extent_of(Connection& map, const Statement& row) {
-  const GridBox box{{row.real(0), row.real(1)}, {row.real(2), row.real(3)}};
-  if (!box.empty() && kLattice.contains(box.min) && kLattice.contains(box.max)) return box;
-  throw CorruptData("map-corrupt",
-                    fmt::format("{}: gpkg_contents gives an extent that no map can have. Restore the map "
-                                "from a copy",
-                                map.path().string()));
-}
-
 }  // namespace
 
 bool is_there(const fs::path& path) {
@@ -202,6 +193,19 @@ std::string version_text(std::uint64_t version) { return fmt::format("{:016x}", 
 
 std::string read_version(Connection& map) { return meta_value(map, "version"); }
 
+GridBox read_extent(Connection& map) {
+  Statement row(map,
+                "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'road_probability' AND "
+                "min_x IS NOT NULL");
+  if (!row.step()) return kNothingObserved;
+  const GridBox box{{row.real(0), row.real(1)}, {row.real(2), row.real(3)}};
+  if (!box.empty() && kLattice.contains(box.min) && kLattice.contains(box.max)) return box;
+  throw CorruptData("map-corrupt",
+                    fmt::format("{}: gpkg_contents gives an extent that no map can have. Restore the map "
+                                "from a copy",
+                                map.path().string()));
+}
+
 std::int64_t count_pending(Connection& map) { return number(map, "SELECT count(*) FROM roadfix_pending"); }
 
 MapInfo read_info(Connection& map) {
@@ -210,11 +214,7 @@ MapInfo read_info(Connection& map) {
   info.version = read_version(map);
   info.schema_version = *as_number<int>(meta_value(map, "schema_version"));
   info.levels = zoom_of(info.settings.cell_m) - kCoarsestZoom + 1;
-  info.extent = kNothingObserved;
-  Statement extent(map,
-                   "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'road_probability' AND "
-                   "min_x IS NOT NULL");
-  if (extent.step()) info.extent = extent_of(map, extent);
+  info.extent = read_extent(map);
   Statement tiles(map, "SELECT count(*) FROM road_probability WHERE zoom_level = ?1");
   tiles.with(zoom_of(info.settings.cell_m)).step();
   info.tiles = tiles.integer(0);

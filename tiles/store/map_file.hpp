@@ -40,6 +40,8 @@ bool lattice_has(sqlite::Connection& map, const MapSettings& settings);
 /// As roadfix_meta and MapInfo have it.
 std::string version_text(std::uint64_t version);
 std::string read_version(sqlite::Connection& map);
+/// Of the observed cells; kNothingObserved where there is none. Throws CorruptData ("map-corrupt").
+GridBox read_extent(sqlite::Connection& map);
 /// Number of tiles that wait to be fused.
 std::int64_t count_pending(sqlite::Connection& map);
 MapInfo read_info(sqlite::Connection& map);

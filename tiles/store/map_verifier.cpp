@@ -136,7 +136,7 @@ class Verifier {
 
   void check_terrain() {
     for (const std::string& what : damage_of_terrain(map_)) {
-      report("terrain-corrupt", fmt::format("{}. {}", what, kRepair));
+      report("terrain-damaged", fmt::format("{}. {}", what, kRepair));
     }
   }
 

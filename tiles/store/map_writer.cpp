@@ -106,6 +106,7 @@ MapWriter::MapWriter(MapWriter&&) noexcept = default;
 MapWriter& MapWriter::operator=(MapWriter&&) noexcept = default;
 
 const MapSettings& MapWriter::settings() const { return state_->settings; }
+GridBox MapWriter::extent() const { return read_extent(state_->map); }
 
 MapWriter MapWriter::existing(const std::filesystem::path& path) {
   Connection map = open_map(path, Access::kRead);

@@ -33,6 +33,8 @@ class MapWriter {
   MapWriter& operator=(MapWriter&&) noexcept;
 
   const MapSettings& settings() const;
+  /// As MapInfo has it, also of a map whose terrain is damaged.
+  GridBox extent() const;
 
   /// The map as it is. Throws NotFound ("map-not-found") where no file is, and what the constructor does.
   static MapWriter existing(const std::filesystem::path& path);

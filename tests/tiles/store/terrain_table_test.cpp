@@ -133,7 +133,7 @@ TEST_F(TerrainTable, NamesADamagedTileAndIsWholeWithoutItAfterRepair) {
   EXPECT_THAT(message, HasSubstr("roadfix terrain"));
   const auto problems = verify_map(path).problems;
   ASSERT_THAT(problems, SizeIs(1));
-  EXPECT_EQ(problems.front().code, "terrain-corrupt");
+  EXPECT_EQ(problems.front().code, "terrain-damaged");
   EXPECT_THAT(problems.front().what, HasSubstr("--repair"));
 
   EXPECT_THAT(writer.repair_terrain(), ElementsAre(HasSubstr("tile column 53 row 769")));
@@ -157,7 +157,7 @@ TEST_F(TerrainTable, IsGoneAfterRepairWhereNothingOfItCanBeRead) {
     execute("DELETE FROM roadfix_terrain WHERE id > 1");
     execute(damage);
     EXPECT_THROW(MapReader reader(path), CorruptData) << damage;
-    EXPECT_THAT(verify_map(path).problems, ElementsAre(::testing::Field(&MapProblem::code, "terrain-corrupt")))
+    EXPECT_THAT(verify_map(path).problems, ElementsAre(::testing::Field(&MapProblem::code, "terrain-damaged")))
         << damage;
     EXPECT_THAT(writer.repair_terrain(), SizeIs(1)) << damage;
     EXPECT_FALSE(info().terrain) << damage;

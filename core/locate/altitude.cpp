@@ -73,7 +73,7 @@ AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m
   if (!ground) {
     throw InvalidInput("terrain-missing",
                        fmt::format("the map {} does not know how high its ground is there: give the height above "
-                                   "ground (agl_m), or add heights with roadfix terrain",
+                                   "ground, or add heights with roadfix terrain",
                                    map.id.name));
   }
   throw InvalidInput("below-ground",

@@ -1,0 +1,91 @@
+// Frames of a vehicle that knows its height above the sea, sent to a service whose map knows its ground's.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/e2e/served_town.hpp"
+#include "tests/support/eventually.hpp"
+
+namespace roadfix {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kGroundM = 700.0;
+
+void lay_level_ground(const std::filesystem::path& map, const GridGeometry& town) {
+  Terrain terrain = Terrain::unknown(GridGeometry::covering(town.box(), Terrain::kFinestCellM).padded(40));
+  for (std::uint16_t& code : terrain.codes) code = Terrain::code_of(kGroundM);
+  const UtmZone zone = UtmZone::from_epsg(32634).value();
+  MapWriter(map, {zone, town.cell_m}).put_terrain(terrain, {.location = "dem.tif"});
+}
+
+std::string noise_png() {
+  cv::Mat frame(400, 400, CV_8UC3);
+  cv::randu(frame, 0, 255);
+  cv::GaussianBlur(frame, frame, {}, 4.0);
+  std::vector<std::uint8_t> png;
+  cv::imencode(".png", frame, png);
+  return testing::text_of(png);
+}
+
+class ServiceAltitude : public testing::ServedTown {
+ protected:
+  static void SetUpTestSuite() {
+    testing::ServedTown::SetUpTestSuite();
+    const auto unfinished = *folder / "high.unfinished";
+    testing::write_map_file(unfinished, town->roads, 2.0);
+    lay_level_ground(unfinished, town->roads.geometry);
+    std::filesystem::rename(unfinished, *folder / "high.gpkg");
+    httplib::Client client = testing::client_of(*service);
+    ASSERT_TRUE(testing::eventually([&] { return client.Get("/v1/maps/high")->status == 200; }));
+  }
+
+  json fix(const std::string& map, const std::string& height) {
+    const std::string prior =
+        "&lat=" + std::to_string(town->place.lat_deg) + "&lon=" + std::to_string(town->place.lon_deg) + "&radius_m=100";
+    return testing::json_of(
+        client_.Post(("/v1/maps/" + map + "/fix?kind=frame&fov_deg=60&roll_deg=0&pitch_deg=0" + prior + height).c_str(),
+                     frame_, "image/png"));
+  }
+
+  std::string frame_ = noise_png();
+};
+
+TEST_F(ServiceAltitude, GivesAFrameTheHeightAboveTheGroundOfTheMap) {
+  const json by_altitude = fix("high", "&alt_m=1000");
+  const json by_height = fix("high", "&agl_m=300");
+  ASSERT_FALSE(by_altitude["modes"].empty()) << by_altitude;
+  EXPECT_NEAR(by_altitude["modes"][0]["agl_m"].get<double>(), 300.0, 1e-6);
+  EXPECT_EQ(by_altitude["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  EXPECT_FALSE(by_height["modes"][0].contains("agl_m"));
+  EXPECT_EQ(fix("high", "&agl_m=300&alt_m=5000")["modes"], by_height["modes"]) << "what is told of the ground counts";
+}
+
+TEST_F(ServiceAltitude, IsRefusedWhereItCannotBe) {
+  EXPECT_EQ(fix("town", "&alt_m=1000")["code"], "terrain-missing");
+  EXPECT_EQ(fix("high", "&alt_m=699")["code"], "below-ground");
+  EXPECT_EQ(fix("high", "")["code"], "missing-parameter");
+}
+
+TEST_F(ServiceAltitude, GivesTheStepsOfATrackTheirsAboveTheGroundBelow) {
+  const json asked{{"map", "high"}, {"lat", town->place.lat_deg}, {"lon", town->place.lon_deg}, {"radius_m", 100}};
+  const json track = testing::json_of(client_.Post("/v1/tracks", asked.dump(), "application/json"));
+  const std::string steps = "/v1/tracks/" + track["id"].get<std::string>() + "/steps?kind=frame&fov_deg=60";
+  const auto step = [&](const std::string& more) {
+    return testing::json_of(client_.Post((steps + more).c_str(), frame_, "image/png"));
+  };
+  EXPECT_NEAR(step("&sequence=1&time_us=1&alt_m=1000")["agl_m"].get<double>(), 300.0, 1e-6);
+  const json later = step("&sequence=2&time_us=2000000&forward_m=20&right_m=0&turn_deg=0&alt_m=950");
+  EXPECT_NEAR(later["agl_m"].get<double>(), 250.0, 1e-6) << later;
+  EXPECT_FALSE(step("&sequence=3&time_us=3000000&agl_m=250&alt_m=950").contains("agl_m"));
+  EXPECT_EQ(step("&sequence=4&time_us=4000000&alt_m=100")["code"], "below-ground");
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -20,6 +20,7 @@ void add_localizability_command(CLI::App& app);
 void add_match_command(CLI::App& app);
 void add_remove_command(CLI::App& app);
 void add_serve_command(CLI::App& app);
+void add_terrain_command(CLI::App& app);
 void add_verify_command(CLI::App& app);
 void add_world_command(CLI::App& app);
 

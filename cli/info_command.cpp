@@ -6,6 +6,7 @@
 
 #include "cli/command.hpp"
 #include "cli/shift_text.hpp"
+#include "cli/terrain_text.hpp"
 #include "core/geodesy/geo_box.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/map_json.hpp"
@@ -27,6 +28,7 @@ void print_json(const std::string& path, const MapInfo& info) {
   answer["map"] = path;
   answer["pending_tiles"] = info.pending;
   answer["schema_version"] = info.schema_version;
+  if (info.terrain) answer["terrain"]["location"] = info.terrain->record.location;
   for (std::size_t i = 0; i < info.sources.size(); ++i) {
     const SourceStatus& source = info.sources[i];
     answer["sources"][i].update({{"location", source.record.location},
@@ -59,20 +61,29 @@ std::string state_of(const SourceStatus& source) {
   return fmt::format("ingested {}", source.ingested_at);
 }
 
+void print_told(const Provenance& told) {
+  for (const auto& [label, value] :
+       {std::pair{"date", told.date}, std::pair{"licence", told.licence}, std::pair{"attribution", told.attribution}}) {
+    if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);
+  }
+}
+
+void print_terrain(const TerrainStatus& terrain) {
+  fmt::print("\nterrain   {}\n  added         {}\n  location      {}\n", heights_text(terrain), terrain.added_at,
+             terrain.record.location);
+  print_told(terrain.record.provenance);
+}
+
 void print_source(const SourceStatus& source) {
   const SourceRecord& r = source.record;
-  const Provenance& p = r.provenance;
   const std::string state = state_of(source);
   fmt::print("\nsource    {} ({})\n  state         {}\n  location      {}\n  made by       {}\n", r.name,
              to_string(r.content), state, r.location, r.method);
-  for (const auto& [label, value] :
-       {std::pair{"date", p.date}, std::pair{"licence", p.licence}, std::pair{"attribution", p.attribution}}) {
-    if (!value.empty()) fmt::print("  {:<13} {}\n", label, value);
-  }
+  print_told(r.provenance);
   fmt::print("  position      {:.3g} m (1 sigma)\n", source.registration_sigma_m());
   if (source.shift) {
     fmt::print("                not the {:.3g} m stated: it would fit the other sources better {}\n",
-               p.registration_sigma_m, directions_of(*source.shift));
+               r.provenance.registration_sigma_m, directions_of(*source.shift));
   }
 }
 
@@ -86,6 +97,7 @@ void print_text(const std::string& path, const MapInfo& info) {
     fmt::print("          {} tiles wait to be fused: an ingest was interrupted. Repeat it\n", info.pending);
   }
   for (const SourceStatus& source : info.sources) print_source(source);
+  if (info.terrain) print_terrain(*info.terrain);
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_info_command(app);
   roadfix::cli::add_verify_command(app);
   roadfix::cli::add_remove_command(app);
+  roadfix::cli::add_terrain_command(app);
   roadfix::cli::add_bench_command(app);
   roadfix::cli::add_detect_command(app);
   roadfix::cli::add_export_command(app);

@@ -66,6 +66,9 @@ void repair(const std::string& path, const std::stop_token& stop) {
   for (const std::string& source : lost) {
     fmt::print(stderr, "source '{}' had damaged evidence, which was dropped: ingest it again with --replace\n", source);
   }
+  for (const std::string& what : writer.repair_terrain()) {
+    fmt::print(stderr, "{}; they were dropped: write the terrain anew with roadfix terrain\n", what);
+  }
 }
 
 void verify(const VerifyArguments& options) {

@@ -27,10 +27,23 @@ json summary_json(const MapInfo& info) {
               {"levels", info.levels},
               {"bbox", nullptr},
               {"area_km2", 0.0}};
+  if (info.terrain) answer["terrain"] = to_json(*info.terrain);
   if (info.extent.empty()) return answer;
   answer["bbox"] = bbox_json(geo_box_around(info.settings.zone, info.extent));
   answer["area_km2"] = info.extent.width_m() * info.extent.height_m() / 1e6;
   return answer;
+}
+
+json to_json(const TerrainStatus& terrain) {
+  const Provenance& p = terrain.record.provenance;
+  return {{"cell_m", terrain.terrain->geometry.cell_m},
+          {"lowest_m", terrain.heights.lowest_m},
+          {"highest_m", terrain.heights.highest_m},
+          {"known_share", terrain.known_share},
+          {"date", p.date},
+          {"licence", p.licence},
+          {"attribution", p.attribution},
+          {"added_at", terrain.added_at}};
 }
 
 json to_json(const MapInfo& info) {

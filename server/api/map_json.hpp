@@ -10,6 +10,9 @@ namespace roadfix::api {
 /// What a list of maps says of each.
 nlohmann::json summary_json(const MapInfo& info);
 
+/// Their `terrain`: what anyone may read of the heights of the ground.
+nlohmann::json to_json(const TerrainStatus& terrain);
+
 /// All that anyone may read, its sources too.
 nlohmann::json to_json(const MapInfo& info);
 

@@ -2,7 +2,9 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cstdint>
 #include <fstream>
+#include <vector>
 
 #include "core/locate/calibration.hpp"
 #include "core/units/error.hpp"
@@ -105,6 +107,30 @@ TEST(ServiceMaps, SaysWhereAMapLacksBlocks) {
   const json& source = map["sources"][0];
   EXPECT_EQ(source["complete"], false);
   EXPECT_EQ(source["blocks_done"], source["blocks_total"].get<int>() - 1);
+}
+
+TEST(ServiceMaps, TellsTheHeightsOfTheGroundOnceAMapHasThemAndKeepsItsVersion) {
+  const testing::TemporaryFolder folder;
+  const testing::Town town;
+  testing::write_map_file(folder / "town.gpkg", town.roads, 2.0);
+  const testing::ServiceProcess service(folder.path());
+  httplib::Client client = testing::client_of(service);
+  const json before = testing::json_of(client.Get("/v1/maps/town"));
+  EXPECT_FALSE(before.contains("terrain"));
+  MapWriter writer(folder / "town.gpkg", {town.zone, 2.0});
+  const GridPoint centre = writer.extent().centre();
+  writer.put_terrain({GridGeometry::covering({centre, centre}, 32.0).padded(1), std::vector<std::uint16_t>(9, 6000)},
+                     {.location = "heights.tif", .provenance = {.licence = "free", .attribution = "DLR e.V."}});
+  const auto terrain = [&] { return testing::json_of(client.Get("/v1/maps/town")).value("terrain", json()); };
+  EXPECT_TRUE(eventually([&] { return !terrain().is_null(); }));
+  EXPECT_EQ(terrain()["lowest_m"], 200.0);
+  EXPECT_EQ(terrain()["attribution"], "DLR e.V.");
+  EXPECT_FALSE(terrain().contains("location")) << "where files lie is nobody's business";
+  const json listed = testing::json_of(client.Get("/v1/maps"))["maps"][0];
+  EXPECT_EQ(listed["terrain"], terrain());
+  EXPECT_EQ(listed["version"], before["version"]);
+  writer.remove_terrain();
+  EXPECT_TRUE(eventually([&] { return terrain().is_null(); }));
 }
 
 TEST(ServiceMaps, DescribesTilesAcrossThe180thMeridianWithinTheBoundsOfTileJson) {

@@ -13,6 +13,7 @@
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
+#include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/georeference.hpp"
 #include "tiles/sources/raster_file.hpp"
 #include "tiles/sources/warp.hpp"
@@ -38,13 +39,13 @@ struct Model {
 };
 
 void require_heights(const RasterFile& file) {
-  if (file.channels() == 1 && file.first_band().GetRasterDataType() != GDT_Byte) return;
+  const bool roads = holds_exported_roads(file.dataset());
+  if (!roads && file.channels() == 1 && file.first_band().GetRasterDataType() != GDT_Byte) return;
   throw InvalidInput(
       "elevation-not-heights",
-      fmt::format("{}: it is a picture (colours, or grey values of 8 bits as shaded relief has), not "
-                  "heights. Name an elevation model: one band of heights in metres or feet. If its bytes "
-                  "are heights, gdal_translate -ot Int16 makes a copy that says so",
-                  file.path()));
+      fmt::format("{}: it holds {}, not heights. Name an elevation model: one band of heights, of more than 8 bits "
+                  "(gdal_translate -ot Int16 makes a copy of bytes that are heights)",
+                  file.path(), roads ? "roads, as roadfix wrote them" : "a picture in colours or shades of grey"));
 }
 
 /// Of a 3D reference system, or of one with a vertical part that says so.

@@ -51,7 +51,7 @@ std::vector<std::string> notes_on(const ElevationReading& reading, const Terrain
   }
   if (terrain.known_share < 1.0) {
     notes.push_back(
-        fmt::format("on {:.2g} % of the map no height is known: there a vehicle's height above ground cannot follow "
+        fmt::format("on {:.3g} % of the map no height is known: there a vehicle's height above ground cannot follow "
                     "from that above "
                     "the sea. Name further elevation models beside these to fill it",
                     100.0 * (1.0 - terrain.known_share)));

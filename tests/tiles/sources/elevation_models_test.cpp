@@ -209,24 +209,41 @@ TEST_F(ElevationModels, OfAVerticalReferenceSystemInFeetAreInFeet) {
   EXPECT_NEAR(read({path}).terrain.cell_height_m(20, 20).value(), 304.8, 0.1);
 }
 
-TEST_F(ElevationModels, AboveTheEllipsoidAreRefused) {
-  for (const char* crs : {"EPSG:4979", "EPSG:4326+5773"}) {
-    RasterSpec spec = this->spec({}, 1.0, 150, 150);
-    spec.epsg = 0;
-    spec.transform = std::array{38.22, 1.0 / 3600.0, 0.0, 37.79, 0.0, -1.0 / 3600.0};
-    const std::string path = write("a.tif", spec, [](int, int, int) { return 700.0; });
-    {
-      const DatasetPtr data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
-      const OGRSpatialReference reference = parse_crs(crs);
-      data->SetSpatialRef(&reference);
-    }
-    if (std::string(crs) == "EPSG:4979") {
-      EXPECT_EQ(code_of([&] { read({path}); }), "elevation-above-ellipsoid") << crs;
-      EXPECT_THAT(message_of([&] { read({path}); }), HasSubstr("gdalwarp"));
-    } else {
-      EXPECT_NEAR(read({path}).terrain.cell_height_m(20, 20).value(), 700.0, 0.1) << "above a geoid";
-    }
+TEST_F(ElevationModels, AboveTheEllipsoidAreRefusedAndAboveAGeoidAreNot) {
+  const std::string zone =
+      R"(PROJCS["WGS 84 / UTM zone 37N",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,)"
+      R"(298.257223563]],PRIMEM["Greenwich",0],UNIT["degree",0.0174532925199433]],)"
+      R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],)"
+      R"(PARAMETER["central_meridian",39],PARAMETER["scale_factor",0.9996],)"
+      R"(PARAMETER["false_easting",500000],PARAMETER["false_northing",0],UNIT["metre",1]])";
+  const RasterSpec plain = spec(kCorner, 32.0, 64, 64);
+  const auto reading = [&](const std::string& crs) {
+    const std::string path = write("a.tif", plain, [](int, int, int) { return 700.0; });
+    const std::string vrt = folder / "a.vrt";
+    std::ofstream(vrt) << R"(<VRTDataset rasterXSize="64" rasterYSize="64"><SRS>)" << crs
+                       << "</SRS><GeoTransform>432000, 32, 0, 4182016, 0, -32</GeoTransform>"
+                       << R"(<VRTRasterBand dataType="Float32" band="1"><SimpleSource><SourceFilename>)" << path
+                       << "</SourceFilename><SourceBand>1</SourceBand></SimpleSource></VRTRasterBand></VRTDataset>";
+    return read({vrt});
+  };
+  for (const std::string& crs :
+       {"COMPD_CS[\"3D\"," + zone + R"(,VERT_CS["height",VERT_DATUM["Ellipsoid",2002],UNIT["metre",1],AXIS["Up",UP]]])",
+        "COMPD_CS[\"3D\"," + zone +
+            R"(,VERT_CS["WGS 84 ellipsoid",VERT_DATUM["WGS 84 ellipsoid",2005],UNIT["metre",1],AXIS["Up",UP]]])"}) {
+    EXPECT_EQ(code_of([&] { reading(crs); }), "elevation-above-ellipsoid") << crs;
+    EXPECT_THAT(message_of([&] { reading(crs); }), HasSubstr("gdalwarp"));
   }
+  for (const std::string crs : {"EPSG:32637", "EPSG:32637+5773", "EPSG:32637+3855"}) {
+    EXPECT_NEAR(reading(crs).terrain.cell_height_m(20, 20).value(), 700.0, 0.1) << crs;
+  }
+}
+
+TEST_F(ElevationModels, InDegreesAndHeightsAboveTheEllipsoidAreRefused) {
+  RasterSpec degrees = spec({}, 1.0, 150, 150);
+  degrees.epsg = 4979;
+  degrees.transform = std::array{38.22, 1.0 / 3600.0, 0.0, 37.79, 0.0, -1.0 / 3600.0};
+  const std::string path = write("a.tif", degrees, [](int, int, int) { return 700.0; });
+  EXPECT_EQ(code_of([&] { read({path}); }), "elevation-above-ellipsoid");
 }
 
 TEST_F(ElevationModels, PicturesAreRefused) {

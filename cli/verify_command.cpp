@@ -67,7 +67,7 @@ void repair(const std::string& path, const std::stop_token& stop) {
     fmt::print(stderr, "source '{}' had damaged evidence, which was dropped: ingest it again with --replace\n", source);
   }
   for (const std::string& what : writer.repair_terrain()) {
-    fmt::print(stderr, "{}; they were dropped: write the terrain anew with roadfix terrain\n", what);
+    fmt::print(stderr, "{}; that was dropped: write the terrain anew with roadfix terrain\n", what);
   }
 }
 

@@ -25,15 +25,14 @@ using sqlite::Statement;
 
 constexpr const char* kCorrupt = "terrain-corrupt";
 
-/// A row of roadfix_terrain that cannot be used.
-struct DamagedTile {
-  std::int64_t id = 0;
+struct Damage {
+  std::int64_t tile = 0;  ///< row of roadfix_terrain that cannot be used; 0 where none can
   std::string what;
 };
 
 struct Contents {
-  Terrain terrain;
-  std::vector<DamagedTile> damage;
+  Terrain terrain = {};
+  std::vector<Damage> damage = {};
 };
 
 bool has_terrain(Connection& map) {
@@ -100,8 +99,8 @@ CorruptData corrupt(const Connection& map, const std::string& what) {
                       map.path().string(), what)};
 }
 
-/// Throws where no map can have such cells: hostile ones would fill the memory.
-GridGeometry read_geometry(Connection& map) {
+/// nullopt where no map can have such cells: hostile ones would fill the memory.
+std::optional<GridGeometry> read_geometry(Connection& map) {
   Statement row(map, "SELECT cell_m, min_x, min_y, max_x, max_y FROM roadfix_terrain_source");
   if (row.step() && is_terrain_cell_size(row.real(0))) {
     const GridBox box{{row.real(1), row.real(2)}, {row.real(3), row.real(4)}};
@@ -111,7 +110,7 @@ GridGeometry read_geometry(Connection& map) {
       if (whole_cells && std::int64_t{geometry.cols} * geometry.rows <= kMostTerrainCells) return geometry;
     }
   }
-  throw corrupt(map, "roadfix_terrain_source names no cells that heights can have");
+  return std::nullopt;
 }
 
 /// Throws CorruptData, which says how the tile is damaged.
@@ -126,7 +125,9 @@ void paste_tile(std::int64_t column, std::int64_t row, std::span<const std::byte
 }
 
 Contents read_contents(Connection& map) {
-  Contents contents{.terrain = Terrain::unknown(read_geometry(map)), .damage = {}};
+  const auto geometry = read_geometry(map);
+  if (!geometry) return {.damage = {{0, "roadfix_terrain_source names no cells that heights can have"}}};
+  Contents contents{.terrain = Terrain::unknown(*geometry), .damage = {}};
   Statement tiles(map,
                   "SELECT id, tile_column, tile_row, tile_data FROM roadfix_terrain ORDER BY tile_row, tile_column");
   while (tiles.step()) {
@@ -195,7 +196,7 @@ std::vector<std::string> damage_of_terrain(Connection& map) {
   if (!has_terrain(map)) return damage;
   try {
     const Contents contents = read_contents(map);
-    for (const DamagedTile& tile : contents.damage) damage.push_back(tile.what);
+    for (const Damage& each : contents.damage) damage.push_back(each.what);
     if (damage.empty() && !heights_of(contents.terrain)) damage.emplace_back("the terrain has no heights");
   } catch (const CorruptData& error) {
     damage.emplace_back(error.what());
@@ -208,7 +209,7 @@ std::vector<std::string> drop_damaged_terrain(Connection& map) {
   if (damage.empty()) return damage;
   try {
     Statement drop(map, "DELETE FROM roadfix_terrain WHERE id = ?1");
-    for (const DamagedTile& tile : read_contents(map).damage) drop.with(tile.id).run();
+    for (const Damage& each : read_contents(map).damage) drop.with(each.tile).run();
     read_terrain(map, kNothingObserved);
   } catch (const CorruptData&) {
     remove_terrain(map);

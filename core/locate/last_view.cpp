@@ -44,8 +44,11 @@ FeatureMap coarser(const FeatureMap& features) {
   return resampled(features, features.cell_m * std::max(kCoarser, std::ceil(1.0 * across / kMaxAcrossCompared)));
 }
 
+/// But for what another height makes of the same frame.
 bool has_same_shape(const FeatureMap& a, const FeatureMap& b) {
-  return a.cell_m == b.cell_m && a.cells.cols() == b.cells.cols() && a.cells.rows() == b.cells.rows();
+  constexpr double kAlike = 0.1;
+  const auto alike = [](int cells, int others) { return std::abs(cells - others) <= kAlike * std::max(cells, others); };
+  return a.cell_m == b.cell_m && alike(a.cells.cols(), b.cells.cols()) && alike(a.cells.rows(), b.cells.rows());
 }
 
 /// Pearson's over the cells observed in both, with `earlier` laid where it was taken; nullopt if there are too few.
@@ -93,20 +96,23 @@ void LastView::move(const std::optional<Odometry>& odometry, bool is_complete) {
   }
 }
 
-View LastView::take_in(const FeatureMap& features) {
+/// Remembers it if it is new.
+bool LastView::was_seen_before_it_moved(std::uint64_t digest) {
+  const auto same = std::ranges::find(seen, digest, &SeenView::digest);
+  if (same != seen.end()) return has_moved(same->moved_m, same->turned_rad);
+  seen.insert(seen.begin(), {digest});
+  if (seen.size() > kRemembered) seen.pop_back();
+  return false;
+}
+
+View LastView::take_in(const FeatureMap& features, std::optional<std::uint64_t> picture) {
+  if (picture && was_seen_before_it_moved(*picture)) return View::kRepeated;
   if (!shows_road(features)) {
     earlier.clear();
     stands_still = false;
     return View::kNew;
   }
-  const std::uint64_t digest = digest_of(features);
-  const auto same = std::ranges::find(seen, digest, &SeenView::digest);
-  if (same == seen.end()) {
-    seen.insert(seen.begin(), {digest});
-    if (seen.size() > kRemembered) seen.pop_back();
-  } else if (has_moved(same->moved_m, same->turned_rad)) {
-    return View::kRepeated;
-  }
+  if (was_seen_before_it_moved(digest_of(features))) return View::kRepeated;
   stands_still = lies_as_earlier(coarser(features));
   return stands_still ? View::kStandsStill : View::kNew;
 }

@@ -21,12 +21,12 @@ bool has_moved(double moved_m, double turned_rad);
 /// Whether two pictures are the same to the last cell. False without any road: one wood looks like the next.
 bool is_same_view(const FeatureMap& a, const FeatureMap& b);
 
-/// kRepeated: the same picture (is_same_view()) was seen before the vehicle moved. kStandsStill: other cells, but the
-/// roads lie where they lay before the vehicle moved, and not where they should be now: the camera has stopped, or the
-/// odometry is wrong.
+/// kRepeated: the same picture was seen before the vehicle moved, by its cells (is_same_view()) or by itself.
+/// kStandsStill: other cells, but the roads lie where they lay before the vehicle moved, and not where they should be
+/// now: the camera has stopped, or the odometry is wrong.
 enum class View { kNew, kRepeated, kStandsStill };
 
-/// A feature map with roads.
+/// A feature map with roads, or the picture that they were found in.
 struct SeenView {
   std::uint64_t digest = 0;
   double moved_m = 0.0;     ///< by the odometry, since it was first seen
@@ -36,7 +36,7 @@ struct SeenView {
 };
 
 struct LastView {
-  static constexpr std::size_t kRemembered = 16;
+  static constexpr std::size_t kRemembered = 32;  ///< 16 pictures and what was found in them
 
   std::vector<SeenView> seen;  ///< all different, newest first
   bool stands_still = false;   ///< the last one was View::kStandsStill
@@ -45,12 +45,13 @@ struct LastView {
   /// The vehicle has moved; without odometry it may be anywhere. `is_complete`: as StepMotion::odometry_is_complete(),
   /// so that it says where roads should be seen next.
   void move(const std::optional<Odometry>& odometry, bool is_complete);
-  /// Compares the view with earlier ones, and remembers it.
-  View take_in(const FeatureMap& features);
+  /// Compares the view with earlier ones, and remembers it. `picture`: see StepInput.
+  View take_in(const FeatureMap& features, std::optional<std::uint64_t> picture = {});
 
   friend bool operator==(const LastView&, const LastView&) = default;
 
  private:
+  bool was_seen_before_it_moved(std::uint64_t digest);
   bool lies_as_earlier(const FeatureMap& features);
 };
 

@@ -28,6 +28,9 @@ struct StepInput {
   std::optional<Odometry> odometry;              ///< since the step before; turns within [-180, 180] degrees
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
+  /// Equal for the same picture, whatever height and attitude it is measured by: tells a camera or a link that has
+  /// stopped. nullopt = the features were found elsewhere.
+  std::optional<std::uint64_t> picture = {};
   /// From where, if the size of what they show follows from that and the ground below the vehicle. The map has heights.
   std::optional<Altitude> altitude = {};
 };

@@ -116,7 +116,7 @@ void Tracker::Step::move() {
 }
 
 void Tracker::Step::see() {
-  const View view = state_.last_view.take_in(*input_.features);
+  const View view = state_.last_view.take_in(*input_.features, input_.picture);
   if (view == View::kNew) {
     measure();
     if (may_search()) state_.recent.keep(*features_);

@@ -44,6 +44,14 @@ std::vector<std::string> step_query() {
   return joined({api::step_fields(), api::feature_fields(), api::position_fields()});
 }
 
+/// Of a camera's picture as it was sent.
+std::optional<std::uint64_t> picture_of(const api::Content& content) {
+  if (!api::is_frame(content.fields)) return std::nullopt;
+  Fnv1a64 hash;
+  hash.add(characters_of(content.image));
+  return hash.value();
+}
+
 /// Of all that the step says, to tell a repeated step from another one. How it is packed says nothing: a form that is
 /// sent again may have another boundary.
 std::int64_t digest_of(const api::Content& content) {
@@ -135,6 +143,7 @@ http::Response take_step(const Service& service, const http::Request& request, P
   if (api::shows_ground(step.content)) {
     step.sent.input.altitude = api::take_altitude(
         step.content.fields, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
+    step.sent.input.picture = picture_of(step.content);
     const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features =

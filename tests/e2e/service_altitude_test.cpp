@@ -83,6 +83,7 @@ TEST_F(ServiceAltitude, GivesTheStepsOfATrackTheirsAboveTheGroundBelow) {
   EXPECT_NEAR(step("&sequence=1&time_us=1&alt_m=1000")["agl_m"].get<double>(), 300.0, 1e-6);
   const json later = step("&sequence=2&time_us=2000000&forward_m=20&right_m=0&turn_deg=0&alt_m=950");
   EXPECT_NEAR(later["agl_m"].get<double>(), 250.0, 1e-6) << later;
+  EXPECT_EQ(later["measurement"], "repeated") << "the same picture, whatever its height";
   EXPECT_FALSE(step("&sequence=3&time_us=3000000&agl_m=250&alt_m=950").contains("agl_m"));
   EXPECT_EQ(step("&sequence=4&time_us=4000000&alt_m=100")["code"], "below-ground");
 }

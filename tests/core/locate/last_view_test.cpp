@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "core/grid/resample.hpp"
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 
@@ -68,11 +69,30 @@ TEST(LastView, IsSeenAgainWhereALinkGoesRoundInItsLastPictures) {
 TEST(LastView, RemembersTheLastPicturesOnly) {
   LastView view;
   for (int col = 0; col < 20; ++col) {
-    EXPECT_EQ(view.take_in(street_at(col)), View::kNew);
+    EXPECT_EQ(view.take_in(street_at(col), 1000U + static_cast<unsigned>(col)), View::kNew);
     view.move(forward(1.0), false);
   }
   EXPECT_EQ(view.take_in(street_at(4)), View::kRepeated);
   EXPECT_EQ(view.take_in(street_at(3)), View::kNew);
+}
+
+TEST(LastView, IsSeenAgainWhereThePictureOfAWoodIs) {
+  LastView view;
+  const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
+  EXPECT_EQ(view.take_in(wood, 7), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.take_in(wood, 7), View::kRepeated);
+  EXPECT_EQ(view.take_in(wood, 8), View::kNew);
+}
+
+TEST(LastView, IsSeenAgainWhereThePictureIsTheSameThoughItWasMeasuredAnew) {
+  LastView view;
+  EXPECT_EQ(view.take_in(street_at(3), 7), View::kNew);
+  view.move(forward(0.6), true);
+  EXPECT_EQ(view.take_in(street_at(4), 7), View::kNew) << "it may hover";
+  view.move(forward(0.6), true);
+  EXPECT_EQ(view.take_in(street_at(5), 7), View::kRepeated);
+  EXPECT_EQ(view.take_in(street_at(6), 8), View::kNew);
 }
 
 TEST(LastView, IsSeenAgainWhereNoOdometryTellsThatTheVehicleHovers) {
@@ -110,6 +130,16 @@ TEST(LastView, StandsStillWhereItsRoadsDoNotMoveAsTheOdometryTells) {
   view.move(forward(1000.0), true);
   EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kStandsStill);
   EXPECT_EQ(view.take_in(crossing_after(10)), View::kNew);
+}
+
+TEST(LastView, StandsStillThoughItsHeightIsToldALittleOtherwise) {
+  std::mt19937_64 random(3);
+  LastView view;
+  EXPECT_EQ(view.take_in(crossing_after(0)), View::kNew);
+  view.move(forward(20.0), true);
+  const FeatureMap higher = resampled(noisy(crossing_after(0), 3, random), 2.0, 1.03);
+  ASSERT_NE(higher.cells.cols(), 60);
+  EXPECT_EQ(view.take_in(higher), View::kStandsStill);
 }
 
 TEST(LastView, IsNewWhereItsRoadsMoveAsTheOdometryTells) {
@@ -157,6 +187,28 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
   }
   const TrackEstimate seeing = fly(tracker, flight, 1);
   EXPECT_NE(seeing.measurement, Measurement::kRepeated);
+}
+
+TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsAttitudeIsToldAnew) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
+  StepInput last = flight.step();
+  last.picture = 17;
+  advance(tracker, last);
+  std::mt19937_64 random(7);
+  const GridPose stopped = flight.pose();
+  for (int i = 0; i < 15; ++i) {
+    StepInput step = flight.step(false);
+    const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
+    step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight.noise, random);
+    step.picture = 17;
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
+    EXPECT_FALSE(estimate.converged()) << "step " << i;
+    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
+    EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
+  }
 }
 
 TEST_F(Track, ClaimsNoPlaceThatAMovementCountedTwiceHasLedTo) {

@@ -52,8 +52,7 @@ std::vector<std::string> notes_on(const ElevationReading& reading, const Terrain
   if (terrain.known_share < 1.0) {
     notes.push_back(
         fmt::format("on {:.3g} % of the map no height is known: there a vehicle's height above ground cannot follow "
-                    "from that above "
-                    "the sea. Name further elevation models beside these to fill it",
+                    "from that above the sea. Name further elevation models beside these to fill it",
                     100.0 * (1.0 - terrain.known_share)));
   }
   return notes;
@@ -101,14 +100,13 @@ void add_terrain_command(CLI::App& app) {
       "Examples:\n"
       "  roadfix terrain city.gpkg Copernicus_DSM_COG_10_N37_00_E038_00_DEM.tif --date 2021 --licence \"Copernicus DEM "
       "licence\" --attribution \"produced using Copernicus WorldDEM-30 (c) DLR e.V. 2010-2014 and (c) Airbus Defence "
-      "and "
-      "Space GmbH 2014-2018 provided under COPERNICUS by the European Union and ESA; all rights reserved\"\n"
+      "and Space GmbH 2014-2018 provided under COPERNICUS by the European Union and ESA; all rights reserved\"\n"
       "  roadfix terrain city.gpkg N37E038.hgt N37E039.hgt --licence \"public domain\" --attribution \"SRTM, "
       "NASA/USGS\"\n"
       "  roadfix terrain city.gpkg --remove\n"
       "Heights are above the sea, in metres unless the file says feet. They are kept in cells of 32 m, of 64 m and "
-      "more "
-      "for maps of more than 130 x 130 km, for the map's ground and 2 km around it. A map that has grown needs them "
+      "more for maps of more than 130 x 130 km, for the map's ground and 2 km around it. A map that has grown needs "
+      "them "
       "anew; those that it had are replaced. If it is interrupted, the map is as it was.");
   command->add_option("map", a->map, "Map file (GeoPackage)")->required();
   auto* models = command->add_option(

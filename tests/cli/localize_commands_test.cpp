@@ -131,6 +131,31 @@ TEST_F(LocalizeCommands, FixSaysWhichCameraItReadFromAPhoto) {
   EXPECT_EQ(roadfix(of_photo + " --cell 2 --black-unseen").code, 2) << "says something of a frame, and there is none";
 }
 
+TEST_F(LocalizeCommands, FixMeasuresAFrameByTheGroundOfTheMapWhereItsHeightAboveTheSeaIsTold) {
+  const std::string frame = folder / "frame.png";
+  cv::Mat pixels(400, 400, CV_8UC3);
+  cv::randu(pixels, 0, 255);
+  cv::GaussianBlur(pixels, pixels, {}, 4.0);
+  cv::imwrite(frame, pixels);
+  const auto fix = [&](const std::string& height) {
+    return roadfix("fix " + map.string() + " " + frame + " --fov 60 --json " + at(place) + " --radius 100 " + height);
+  };
+  EXPECT_THAT(fix("--alt 1000").err, HasSubstr("[terrain-missing]"));
+  Terrain level = Terrain::unknown(GridGeometry::covering(town.geometry.box(), Terrain::kFinestCellM).padded(40));
+  for (std::uint16_t& code : level.codes) code = Terrain::code_of(700.0);
+  MapWriter(map, {zone, town.geometry.cell_m}).put_terrain(level, {.location = "dem.tif"});
+  EXPECT_THAT(fix("--alt 600").err, HasSubstr("[below-ground]"));
+  const auto by_altitude = nlohmann::json::parse(fix("--alt 1000").out);
+  const auto by_height = nlohmann::json::parse(fix("--agl 300").out);
+  ASSERT_FALSE(by_altitude["modes"].empty()) << by_altitude;
+  EXPECT_NEAR(by_altitude["modes"][0]["agl_m"].get<double>(), 300.0, 1e-6);
+  EXPECT_EQ(by_altitude["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  for (const char* besides : {"--agl 300", "--gsd 1", "--exif", "--cell 2"}) {
+    EXPECT_EQ(fix(std::string("--alt 1000 ") + besides).code, 2) << besides;
+  }
+  EXPECT_EQ(fix("").code, 2) << "a lens without a height";
+}
+
 TEST_F(LocalizeCommands, FixNotesThatAFrameIsReadByAnotherDetectorThanTheMap) {
   const auto photo = testing::drone_jpeg(cv::Mat(90, 120, CV_8UC3, cv::Scalar(90, 120, 100)), "");
   save(photo, folder / "frame.jpg");

@@ -90,7 +90,15 @@ api::Features FeatureInput::read(const std::string& path) {
     const Another another = parse_also(text);
     others.push_back({features_in(another.path), another.offset});
   }
-  return api::together(std::move(first), std::move(others), kMaxCells);
+  api::Features all = api::together(std::move(first), std::move(others), kMaxCells);
+  for (const std::size_t number : api::frame_numbers(all.left_out)) {
+    const std::string file = number == 1 ? path : parse_also(options_.also[number - 2]).path;
+    fmt::print(stderr,
+               "note: left out frame {}, {}: it contradicts the others where they show the same ground. Check the "
+               "picture and its offset\n",
+               number, file);
+  }
+  return all;
 }
 
 api::Features FeatureInput::features_in(const std::string& path) {

@@ -103,6 +103,7 @@ Search search_of(const FixArguments& options, bool several) {
 Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
   FixOptions options = search.options;
   options.own_frame = std::move(input.own_frame);
+  options.left_out = input.left_out;
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);
   return search.altitude ? locate_from(*search.altitude, search.view, input.map, search.prior, options)

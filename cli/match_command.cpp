@@ -85,7 +85,7 @@ void run_match(const MatchArguments& options) {
   match_options.stop = stop_on_signals();
   const std::vector<MatchScore> scores = match(view, input.map, poses, match_options);
   if (options.as_json) {
-    fmt::print("{}\n", json_text(api::to_json(scores, view), 2));
+    fmt::print("{}\n", json_text(api::to_json(scores, view, input), 2));
   } else {
     print_text(poses, scores);
   }

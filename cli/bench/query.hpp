@@ -49,7 +49,8 @@ struct Answer {
   std::optional<FixMode> mode;  ///< the same with its ellipse, from methods that give one
   std::optional<SearchFigures> figures;
   double probability = 0.0;
-  double time_ms = 0.0;  ///< 0 where no place was looked for: not counted
+  std::vector<std::size_t> left_out;  ///< FramesTogether::left_out
+  double time_ms = 0.0;               ///< 0 where no place was looked for: not counted
   // Of the true place, where it is known; the time does not count.
   std::optional<KeypointCounts> keypoints;  ///< of keypoint methods
   std::optional<double> rho_at_truth;       ///< equation (5) of the roads there: the paper's figure 2

@@ -11,6 +11,7 @@
 #include "cli/evaluation/nees.hpp"
 #include "cli/evaluation/statistics.hpp"
 #include "core/locate/calibration.hpp"
+#include "server/api/features.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/json_parts.hpp"
 
@@ -56,6 +57,7 @@ json outcome_json(const Outcome& outcome) {
           {"answer", answer.best ? api::pose_json(*answer.best) : json(nullptr)},
           {"ellipse", ellipse_json(answer.mode)},
           {"probability", answer.probability},
+          {"left_out", api::frame_numbers(answer.left_out)},
           {"evidence", figures_json(answer.figures)},
           {"error_m", number_or_null(outcome.error_m)},
           {"heading_error_deg", number_or_null(outcome.heading_error_deg)},

@@ -65,16 +65,17 @@ class RoadsMethod : public Method {
   Answer answer(const Query& query) const override {
     const Parts parts = parts_of(query);
     const auto start = Clock::now();
-    const std::optional<FeatureMap> features = together(parts.features);
+    const std::optional<FramesTogether> seen = together(parts.features);
     Answer answer;
-    if (!features) {
+    if (!seen) {
       answer.reason = kRepeated;
       return answer;
     }
     FixOptions options = options_.fix;
     options.search.scale_range = query.scale_range;
     if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
-    const Fix fix = locate(map_, *features, query.prior, options);
+    options.left_out = seen->left_out;
+    const Fix fix = locate(map_, seen->features, query.prior, options);
     answer.status = fix.status;
     answer.reason = fix.reason;
     answer.probability = fix.probability;
@@ -83,8 +84,9 @@ class RoadsMethod : public Method {
       answer.mode = fix.modes.front();
       answer.best = answer.mode->pose;
     }
+    answer.left_out = seen->left_out;
     answer.time_ms = parts.detection_ms + ms_since(start);
-    if (query.truth) answer.rho_at_truth = match(map_, *features, std::span(&*query.truth, 1)).front().rho;
+    if (query.truth) answer.rho_at_truth = match(map_, seen->features, std::span(&*query.truth, 1)).front().rho;
     return answer;
   }
 
@@ -119,8 +121,8 @@ class RoadsMethod : public Method {
   }
 
   /// As `fix` takes several frames; nullopt where it refuses them since their camera had stopped.
-  static std::optional<FeatureMap> together(const std::vector<PlacedFeatures>& parts) {
-    if (parts.size() == 1) return parts.front().features;
+  static std::optional<FramesTogether> together(const std::vector<PlacedFeatures>& parts) {
+    if (parts.size() == 1) return FramesTogether{parts.front().features, {}};
     try {
       return laid_together(parts, cli::kMaxCells);
     } catch (const InvalidInput& error) {

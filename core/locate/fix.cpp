@@ -47,14 +47,16 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const GridPose
 }
 
 /// Refuses a likely place where the frame that is asked for, or a half of it, does not fit by itself.
-void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const std::optional<FeatureMap>& own_frame,
-             const SearchMode& best) {
+void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const FixOptions& options, const SearchMode& best) {
+  const std::optional<FeatureMap>& own_frame = options.own_frame;
   const FeatureMap asked_for = own_frame ? in_cells_of(map, *own_frame) : cells;
   const FeatureMap frame = resampled(asked_for, asked_for.cell_m, best.scale);
-  if (own_frame && contradicts(map, frame, best.pose, fix.modes.front().rho)) {
+  const bool left_out = std::ranges::find(options.left_out, std::size_t{0}) != options.left_out.end();
+  if (left_out || (own_frame && contradicts(map, frame, best.pose, fix.modes.front().rho))) {
     refuse_place(fix, "frames-contradict",
                  "the frames fit at one place together, but the one whose position is asked for does not fit there by "
-                 "itself: check where the others were taken from, and that no frame or movement comes late");
+                 "itself, or contradicts the others: check where the others were taken from, and that no frame or "
+                 "movement comes late");
   } else if (const char* half = contradicting_half(map, frame, best.pose)) {
     refuse_place(
         fix, "halves-contradict",
@@ -130,7 +132,7 @@ Fix locate(const MapView& map, const FeatureMap& features, const Prior& prior, c
   for (std::size_t i = 0; i < told; ++i) {
     fix.modes.push_back(to_geographic(map, cells, found.modes[i], decision.weights[i], calibration));
   }
-  if (claims_a_place(fix)) confirm(fix, map, cells, options.own_frame, found.modes.front());
+  if (claims_a_place(fix)) confirm(fix, map, cells, options, found.modes.front());
   fix.searched_km2 = region.area_km2();
   fix.search_time = std::chrono::steady_clock::now() - started;
   return fix;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -26,6 +27,8 @@ struct FixOptions {
   /// If several frames were laid together: the one whose position is asked for. It has to confirm a likely place by
   /// itself.
   std::optional<FeatureMap> own_frame{};
+  /// FramesTogether::left_out: the own frame, 0, confirms no place if it is one of them.
+  std::vector<std::size_t> left_out{};
   std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr
   SearchOptions search{};  ///< all but the cache and the surroundings, which the map gives
 };

@@ -7,16 +7,11 @@
 
 #include "core/grid/cell_moments.hpp"
 #include "core/grid/observed_range.hpp"
-#include "core/locate/search_figures.hpp"
 #include "core/match/score.hpp"
 #include "core/search/shared_road.hpp"
 
 namespace roadfix {
 namespace {
-
-// On less, one place always fits far better than the others, and what tells chance from more than chance no longer
-// holds.
-constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
 // Of a square as large as the ground that was seen. Eight frames of a flight of which every second was left out stay
 // within, and frames of cameras that lean far.

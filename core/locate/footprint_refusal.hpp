@@ -6,8 +6,13 @@
 #include <string>
 
 #include "core/grid/feature_map.hpp"
+#include "core/locate/search_figures.hpp"
 
 namespace roadfix {
+
+/// On less, one place always fits far better than the others, and what tells chance from more than chance no longer
+/// holds.
+inline constexpr double kMinGroundM2 = 16.0 * kSampleM2;
 
 /// How far from the point below the UAV the farthest observed ground lies, and how far it may: memory and time of a
 /// search grow with its square or more.

@@ -2,11 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
 #include "core/grid/cell_moments.hpp"
 #include "core/locate/footprint_refusal.hpp"
+#include "core/locate/frame_agreement.hpp"
 #include "core/locate/last_view.hpp"
 #include "core/locate/soft_map.hpp"
 #include "core/units/error.hpp"
@@ -57,13 +59,25 @@ void refuse_far_apart(const FeatureMap& together) {
                                   reach.farthest_m, reach.allowed_m));
 }
 
+std::vector<PlacedFeatures> all_but(std::span<const std::size_t> left_out, std::span<const PlacedFeatures> parts) {
+  std::vector<PlacedFeatures> rest;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (!std::ranges::binary_search(left_out, i)) rest.push_back(parts[i]);
+  }
+  return rest;
+}
+
 }  // namespace
 
-FeatureMap laid_together(std::span<const PlacedFeatures> parts, double max_cells) {
-  FeatureMap result = combined(parts, max_cells);
-  refuse_far_apart(result);
+FramesTogether laid_together(std::span<const PlacedFeatures> parts, double max_cells) {
+  FramesTogether result{combined(parts, max_cells), {}};
+  FeatureMap& features = result.features;
+  refuse_far_apart(features);
   refuse_repeated(parts);
-  result.nadir_sigma_m = std::hypot(result.nadir_sigma_m, kToldOffsetShare * mean_distance_m(parts));
+  result.left_out = contradicting_frames(parts);
+  const std::vector<PlacedFeatures> rest = all_but(result.left_out, parts);
+  if (rest.size() < parts.size()) features = combined(rest, max_cells);
+  features.nadir_sigma_m = std::hypot(features.nadir_sigma_m, kToldOffsetShare * mean_distance_m(rest));
   return result;
 }
 

@@ -28,9 +28,16 @@ Features together(Features first, std::vector<OtherFeatures> others, double max_
     parts.push_back({std::move(other.features.map), other.offset});
     if (first.detect_time) *first.detect_time += other.features.detect_time.value();
   }
-  first.map = laid_together(parts, max_cells);
+  FramesTogether laid = laid_together(parts, max_cells);
+  first.map = std::move(laid.features);
+  first.left_out = std::move(laid.left_out);
   first.own_frame = std::move(parts.front().features);
   return first;
+}
+
+std::vector<std::size_t> frame_numbers(std::vector<std::size_t> indices) {
+  for (std::size_t& index : indices) ++index;
+  return indices;
 }
 
 }  // namespace roadfix::api

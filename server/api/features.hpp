@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <optional>
@@ -22,6 +23,7 @@ struct Features {
   std::optional<FrameCamera> camera_in_file{};  ///< of a frame whose file tells it
   std::optional<std::string> detector{};        ///< of frames: RoadDetector::describe()
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
+  std::vector<std::size_t> left_out{};          ///< FramesTogether::left_out, the first picture being 0
 };
 
 /// What the pixels of a frame measure on the ground.
@@ -61,6 +63,9 @@ struct OtherFeatures {
   Features features;
   BodyOffset offset;
 };
+
+/// Indices of frames as answers tell them: counted from 1, the first picture.
+std::vector<std::size_t> frame_numbers(std::vector<std::size_t> indices);
 
 /// laid_together(), with the camera of the first and the time of all. Throws as that does.
 Features together(Features first, std::vector<OtherFeatures> others, double max_cells);

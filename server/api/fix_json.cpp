@@ -71,6 +71,7 @@ json to_json(const Fix& fix, const Features& features) {
   answer["made_by"] = made_by(features.detector);
   if (features.detect_time) answer["time_ms"]["detect"] = features.detect_time->count();
   if (features.camera_in_file) answer["camera"] = to_json(*features.camera_in_file);
+  if (!features.left_out.empty()) answer["left_out"] = frame_numbers(features.left_out);
   return answer;
 }
 
@@ -86,7 +87,7 @@ json to_json(const Localizability& place) {
   return answer;
 }
 
-json to_json(std::span<const MatchScore> scores, const MapView& map) {
+json to_json(std::span<const MatchScore> scores, const MapView& map, const Features& features) {
   json list = json::array();
   for (const MatchScore& score : scores) {
     json entry{{"rho", nullptr}, {"probability", nullptr}, {"observed_cells", score.observed_cells}};
@@ -96,7 +97,9 @@ json to_json(std::span<const MatchScore> scores, const MapView& map) {
     }
     list.push_back(std::move(entry));
   }
-  return {{"scores", std::move(list)}, {"map", to_json(map.id)}};
+  json answer{{"scores", std::move(list)}, {"map", to_json(map.id)}};
+  if (!features.left_out.empty()) answer["left_out"] = frame_numbers(features.left_out);
+  return answer;
 }
 
 }  // namespace roadfix::api

@@ -18,12 +18,13 @@ namespace roadfix::api {
 const char* to_string(FixStatus status);
 
 nlohmann::json to_json(const Fix& fix);
-/// With what the features that it was found by tell of a frame: its detector and how long that took, and its camera.
+/// With what the features that it was found by tell of frames: their detector and how long that took, the camera, and
+/// which were left out.
 nlohmann::json to_json(const Fix& fix, const Features& features);
 
 nlohmann::json to_json(const Localizability& place);
 
 /// One of "scores" per pose: rho and probability (equations 5 and 7) are null where they are not defined.
-nlohmann::json to_json(std::span<const MatchScore> scores, const MapView& map);
+nlohmann::json to_json(std::span<const MatchScore> scores, const MapView& map, const Features& features);
 
 }  // namespace roadfix::api

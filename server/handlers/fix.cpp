@@ -49,6 +49,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const api::Features features = features_of(service, request, content, map->view);
   options.calibration = service.calibration;
   options.own_frame = features.own_frame;
+  options.left_out = features.left_out;
   const api::HangUp hang_up(request.abandoned);
   const SearchThreads::Share share(service.search_threads);
   options.search.threads = share.threads();

@@ -27,7 +27,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
   options.stop = limit.token();
   const SearchThreads::Share share(service.search_threads);
   options.threads = share.threads();
-  return json_response(api::to_json(match(map->view, features.map, poses, options), map->view));
+  return json_response(api::to_json(match(map->view, features.map, poses, options), map->view, features));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string>
 #include <vector>
 
@@ -213,6 +215,14 @@ TEST_F(LocalizeCommands, FixLaysWindowsAlongAFlightTogether) {
   const auto& best = answer["modes"][0];
   EXPECT_NEAR(best["pose"]["lat"].get<double>(), place.lat_deg, 3e-5);
   EXPECT_NEAR(best["pose"]["lon"].get<double>(), place.lon_deg, 5e-5);
+  EXPECT_THAT(together.err, ::testing::Not(HasSubstr("left out")));
+  const auto strayed = folder / "strayed.png";
+  save_what_is_seen(moved(truth, {-40.0, 0.0, {}}), 80, strayed);
+  const ProgramResult rest = roadfix("fix --json " + input + also + " --also " + strayed.string() + ",-40,70,0");
+  EXPECT_THAT(rest.err, HasSubstr("note: left out frame 4, " + strayed.string() + ": it contradicts the others"));
+  const auto answer_of_rest = nlohmann::json::parse(rest.out);
+  EXPECT_EQ(answer_of_rest["left_out"], nlohmann::json::array({4}));
+  EXPECT_EQ(answer_of_rest["modes"], answer["modes"]);
   EXPECT_THAT(roadfix("fix " + input + "--also " + window.string() + ",1,2").err, HasSubstr("[also-unreadable]"));
   EXPECT_THAT(roadfix("fix " + input + "--also " + window.string() + ",9e5,0,0").err,
               HasSubstr("[frames-too-far-apart]"));

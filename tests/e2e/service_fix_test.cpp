@@ -92,6 +92,16 @@ TEST_F(ServiceFix, LaysFramesOfAFlightTogether) {
   ASSERT_FALSE(fix["modes"].empty()) << fix;
   expect_pose(fix["modes"][0]["pose"], town->place, town->heading_deg, 6.0, 2.0);
   EXPECT_GT(fix["modes"][0]["observed_cells"], 1.3 * alone["modes"][0]["observed_cells"].get<double>());
+  EXPECT_FALSE(fix.contains("left_out"));
+
+  const json strayed{{"image", base64(town->seen_from(moved(town->pose, {-60.0, 0.0, {}}), 100))},
+                     {"forward_m", -60},
+                     {"right_m", 90},
+                     {"turn_deg", 0}};
+  request["also"] = json::array({frame, strayed});
+  const json rest = testing::json_of(client_.Post("/v1/maps/town/fix", request.dump(), "application/json"));
+  EXPECT_EQ(rest["left_out"], json::array({3})) << rest;
+  expect_pose(rest["modes"][0]["pose"], town->place, town->heading_deg, 6.0, 2.0);
 
   const auto refusal = [&](const json& also) {
     request["also"] = also;

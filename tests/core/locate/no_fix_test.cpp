@@ -256,6 +256,17 @@ TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
   }
 }
 
+TEST_F(NoFix, IsAnsweredWhereTheOthersContradictTheFrameThatIsAskedFor) {
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  const FeatureMap others = observed_at(map_, truth, 160, 160, 2.0, {0.2, 0.2}, random_);
+  const FeatureMap bare = FeatureMap::centred(CellArray(100, 100, kNoRoad), 2.0);
+  ASSERT_EQ(locate(view_, others, {}, {.own_frame = bare, .left_out = {1}}).status, FixStatus::kFix);
+  const Fix refused = locate(view_, others, {}, {.own_frame = bare, .left_out = {0}});
+  EXPECT_EQ(refused.status, FixStatus::kNoFix);
+  EXPECT_EQ(refused.reason, "frames-contradict");
+  EXPECT_LT(error_m(refused.modes.at(0).pose, truth), 4.0) << "as a hint";
+}
+
 TEST_F(NoFix, RefusesAFrameOfWhichAHalfIsOlderThanTheOther) {
   const auto lower_half_of = [](const FeatureMap& from, FeatureMap frame) {
     for (int row = frame.cells.rows() / 2; row < frame.cells.rows(); ++row) {

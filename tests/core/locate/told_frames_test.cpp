@@ -1,5 +1,6 @@
 #include "core/locate/told_frames.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/support/ascii_map.hpp"
@@ -14,7 +15,9 @@ constexpr double kPlenty = 1e6;
 
 FeatureMap frame_of(const char* rows) { return FeatureMap::centred(from_ascii(rows), 2.0); }
 
-double sigma_of(const std::vector<PlacedFeatures>& parts) { return laid_together(parts, kPlenty).nadir_sigma_m; }
+double sigma_of(const std::vector<PlacedFeatures>& parts) {
+  return laid_together(parts, kPlenty).features.nadir_sigma_m;
+}
 
 TEST(LaidTogether, KnowsThePlaceNoBetterThanTheWayToTheFrameThatTellsIt) {
   const FeatureMap road = frame_of("#.. #.. #..");
@@ -34,7 +37,19 @@ TEST(LaidTogether, AddsTheWayToWhatTheFramesKnowOfTheirNadirs) {
 
 TEST(LaidTogether, LeavesTheCellsToCombined) {
   const std::vector<PlacedFeatures> parts{{frame_of("#.. #.. #.."), {}}, {frame_of("### ... ..."), {4.0, 0.0, {}}}};
-  EXPECT_EQ(laid_together(parts, kPlenty).cells, combined(parts, kPlenty).cells);
+  EXPECT_EQ(laid_together(parts, kPlenty).features.cells, combined(parts, kPlenty).cells);
+}
+
+TEST(LaidTogether, LeavesOutWhatContradictsTheOthersAsIfItHadNotBeenGiven) {
+  const auto frame_of_large_cells = [](const char* rows) { return FeatureMap::centred(from_ascii(rows), 20.0); };
+  const FeatureMap road = frame_of_large_cells("#.... #.... ##### ..... .....");
+  const FeatureMap same = frame_of_large_cells("#.... #.... ####9 ..... .....");
+  const FeatureMap other = frame_of_large_cells("....# ....# ..... ...## ...#.");
+  const std::vector<PlacedFeatures> parts{{road, {}}, {other, {0.0, 15.0, {}}}, {same, {}}};
+  const std::vector<PlacedFeatures> rest{parts[0], parts[2]};
+  const FramesTogether all = laid_together(parts, kPlenty);
+  EXPECT_THAT(all.left_out, ::testing::ElementsAre(1));
+  EXPECT_EQ(all.features, laid_together(rest, kPlenty).features);
 }
 
 TEST(LaidTogether, RefusesOnePictureFromTwoPlaces) {

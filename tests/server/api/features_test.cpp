@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/locate/told_frames.hpp"
+#include "tests/support/ascii_map.hpp"
 #include "tests/support/random_cells.hpp"
 
 namespace roadfix::api {
@@ -24,7 +25,16 @@ TEST(Features, OfSeveralFramesTakeTheTimeOfAllAndHaveTheCameraOfTheFirst) {
   EXPECT_EQ(all.camera_in_file.value().agl_m, 40.0);
   EXPECT_EQ(all.own_frame, first.map);
   const std::vector<PlacedFeatures> parts{{first.map, {}}, {other.features.map, other.offset}};
-  EXPECT_EQ(all.map, laid_together(parts, 1e6));
+  EXPECT_EQ(all.map, laid_together(parts, 1e6).features);
+}
+
+TEST(Features, SayWhichFramesWereLeftOut) {
+  const auto seen = [](const char* rows) { return Features{FeatureMap::centred(testing::from_ascii(rows), 20.0)}; };
+  const Features first = seen("#.... #.... ##### ..... .....");
+  const Features all = together(first, {{seen("....# ....# ..... ...## ...#."), {}}, {first, {}}}, 1e6);
+  EXPECT_EQ(all.left_out, std::vector<std::size_t>{1});
+  EXPECT_EQ(all.own_frame, first.map);
+  EXPECT_EQ(frame_numbers(all.left_out), std::vector<std::size_t>{2}) << "as answers tell it";
 }
 
 TEST(Features, TakeNoTimeWhereTheyWereGiven) {

@@ -88,10 +88,20 @@ TEST(FixJson, ALocalizabilityNamesThePlacesAlike) {
   EXPECT_FALSE(to_json(Localizability{}).contains("reason"));
 }
 
+TEST(FixJson, CountsFramesThatWereLeftOutFromTheFirstOn) {
+  Features features;
+  EXPECT_FALSE(to_json(Fix{}, features).contains("left_out"));
+  features.left_out = {0, 3};
+  const auto numbers = nlohmann::json::array({1, 4});
+  EXPECT_EQ(to_json(Fix{}, features)["left_out"], numbers);
+  const MapView map = testing::view_of({{2.0, {0, 0}, 1, 1}, CellArray(1, 1)});
+  EXPECT_EQ(to_json(std::span<const MatchScore>(), map, features)["left_out"], numbers);
+}
+
 TEST(FixJson, AMatchWithoutCommonCellsHasNoRho) {
   const std::vector<MatchScore> scores{{0.25, 100}, {-0.5, 7}, {std::nullopt, 0}};
   const MapView map = testing::view_of({{2.0, {0, 0}, 1, 1}, CellArray(1, 1)});
-  const auto answer = to_json(scores, map);
+  const auto answer = to_json(scores, map, {});
   EXPECT_EQ(answer["map"]["name"], "town");
   EXPECT_EQ(answer["scores"][0], (nlohmann::json{{"rho", 0.25}, {"probability", 0.25}, {"observed_cells", 100}}));
   EXPECT_EQ(answer["scores"][1]["probability"], 0.0);

@@ -60,7 +60,7 @@ TEST(FlightRequest, LaysOthersAroundItsPictureWhereTheyWereTaken) {
   const FeatureMap own = FeatureMap::centred(seen(20, 16), 2.0);
   const std::vector<PlacedFeatures> parts{
       {own, {}}, {FeatureMap::centred(seen(18, 18), 2.0), kBehind}, {FeatureMap::centred(seen(10, 30), 2.0), ahead}};
-  EXPECT_EQ(features.map, laid_together(parts, 1e6));
+  EXPECT_EQ(features.map, laid_together(parts, 1e6).features);
   EXPECT_EQ(features.own_frame, own) << "which has to bear out the answer by itself";
 }
 
@@ -79,7 +79,7 @@ TEST(FlightRequest, ReadsTheCameraOfEachFrameFromItsFile) {
   const auto alone = [&](const char* height_m) { return read(content_of(photo(height_m), frame)).map; };
   const std::vector<PlacedFeatures> parts{{alone("+40.00"), {}}, {alone("+80.00"), kBehind}};
   ASSERT_GT(std::abs(parts[0].features.nadir.row - parts[1].features.nadir.row), 5.0);
-  EXPECT_EQ(features.map, laid_together(parts, 1e6));
+  EXPECT_EQ(features.map, laid_together(parts, 1e6).features);
   EXPECT_EQ(features.camera_in_file.value().agl_m, 40.0) << "of the picture that is asked for";
   EXPECT_TRUE(features.detect_time);
 }

@@ -85,19 +85,24 @@ Contradictions contradictions_of(std::span<const PlacedFeatures> parts) {
   return result;
 }
 
-/// Those of `frames` that others contradict rather than agree with, by the largest majority; empty where there is none.
-std::vector<std::size_t> most_contradicted(const Contradictions& contradictions,
-                                           const std::vector<std::size_t>& frames) {
+/// By how many more of `others` a frame is contradicted than agreed with.
+int majority_against(std::size_t frame, std::span<const std::size_t> others, const Contradictions& contradictions) {
+  int majority = 0;
+  for (const std::size_t other : others) majority += contradictions[frame][other];
+  return majority;
+}
+
+/// Those with the largest majority against them, as far as others bear it out: of two that only contradict each other
+/// nobody knows which is wrong. Empty where there is no majority.
+std::vector<std::size_t> most_contradicted(const Contradictions& contradictions, std::span<const std::size_t> frames) {
   std::vector<std::size_t> found;
+  std::vector<std::size_t> others;
   int most = 1;
+  for (const std::size_t frame : frames) most = std::max(most, majority_against(frame, frames, contradictions));
   for (const std::size_t frame : frames) {
-    int majority = 0;
-    for (const std::size_t other : frames) majority += contradictions[frame][other];
-    if (majority > most) found.clear();
-    if (majority < most) continue;
-    most = majority;
-    found.push_back(frame);
+    (majority_against(frame, frames, contradictions) == most ? found : others).push_back(frame);
   }
+  std::erase_if(found, [&](std::size_t frame) { return majority_against(frame, others, contradictions) <= 0; });
   return found;
 }
 

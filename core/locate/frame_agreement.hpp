@@ -11,7 +11,8 @@
 namespace roadfix {
 
 /// Indices into `parts`, ascending: those that more of the others contradict than agree with. The most contradicted are
-/// left out first, then the rest are asked again; if that leaves no majority, none is left out.
+/// left out first, then the rest are asked again; none of those that only contradict each other, and none at all if
+/// that leaves no majority.
 ///
 /// Two frames are compared where they share at least 3600 m2 of observed ground and both show at least 0.4 times the
 /// road of one street across it. They contradict each other if what searches compare (soft_map.hpp) correlates there by

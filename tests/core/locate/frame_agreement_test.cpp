@@ -77,6 +77,13 @@ TEST(ContradictingFrames, AreThoseOfAnotherPlaceOrWithAnotherOffset) {
 TEST(ContradictingFrames, AreNotToldWithoutAMajority) {
   EXPECT_THAT(contradicting({right(0), of_another_place(1)}), IsEmpty());
   EXPECT_THAT(contradicting({right(0), right(1), of_another_place(0), of_another_place(1)}), IsEmpty());
+  const auto far_on = [](PlacedFeatures part) {
+    part.offset.forward_m += 500.0;
+    return part;
+  };
+  EXPECT_THAT(contradicting({right(0), of_another_place(1), far_on(right(0)), far_on(right(1)), far_on(right(2))}),
+              IsEmpty())
+      << "one of the first two is wrong, but which?";
 }
 
 TEST(ContradictingFrames, ShowRoadsAndEnoughOfTheGroundOfOthers) {

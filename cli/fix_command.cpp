@@ -106,8 +106,7 @@ Fix located(const Search& search, api::Features& input, OnProgress progress = {}
   options.left_out = input.left_out;
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);
-  return search.altitude ? locate_from(*search.altitude, search.view, input.map, search.prior, options)
-                         : locate(search.view, input.map, search.prior, options);
+  return locate_from(search.altitude, search.view, input.map, search.prior, options);
 }
 
 void fix_one(const FixArguments& options, const std::filesystem::path& picture) {

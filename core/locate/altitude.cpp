@@ -89,9 +89,10 @@ FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m
   return features;
 }
 
-Fix locate_from(const Altitude& altitude, const MapView& map, const FeatureMap& features, const Prior& prior,
-                const FixOptions& options) {
-  const auto agl = agl_above(map, search_region(map, prior, options).box, altitude.above_sea_m);
+Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
+                const Prior& prior, const FixOptions& options) {
+  if (!altitude) return locate(map, features, prior, options);
+  const auto agl = agl_above(map, search_region(map, prior, options).box, altitude->above_sea_m);
   if (!agl) {
     return unknown_height(map,
                           "the map does not know how high the ground is that is searched, or it is above the UAV: "
@@ -108,9 +109,9 @@ Fix locate_from(const Altitude& altitude, const MapView& map, const FeatureMap& 
     sized.search.scale_range = std::min(kMaxScaleRange, together(options.search.scale_range, agl->scale_range()));
   }
   const double agl_m = agl->middle_m();
-  if (options.own_frame) sized.own_frame = seen_from(*options.own_frame, altitude, agl_m);
-  Fix fix = locate(map, seen_from(features, altitude, agl_m), prior, sized);
-  relate_to_ground(fix, map, altitude.above_sea_m, agl_m);
+  if (options.own_frame) sized.own_frame = seen_from(*options.own_frame, *altitude, agl_m);
+  Fix fix = locate(map, seen_from(features, *altitude, agl_m), prior, sized);
+  relate_to_ground(fix, map, altitude->above_sea_m, agl_m);
   if (claims_a_place(fix)) require_right_size(fix, options.search.scale_range);
   return fix;
 }

@@ -38,11 +38,13 @@ AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m
 FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m);
 
 /// locate(), where the size of what `features` and `options.own_frame` show follows from the altitude and the ground
-/// below each place. The search goes over the sizes that this allows, beside those of options.search.scale_range, up to
+/// below each place; nullopt = they have it.
+///
+/// The search goes over the sizes that this allows, beside those of options.search.scale_range, up to
 /// kMaxScaleRange; FixMode::scale is relative to the size that follows. no_fix, where it may be any or too many sizes
 /// ("height-unknown"), and where the best place does not show the ground in the size that it should
 /// ("terrain-contradicts"). Throws as locate().
-Fix locate_from(const Altitude& altitude, const MapView& map, const FeatureMap& features, const Prior& prior,
-                const FixOptions& options);
+Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
+                const Prior& prior, const FixOptions& options);
 
 }  // namespace roadfix

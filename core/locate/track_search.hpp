@@ -16,11 +16,12 @@ class TrackSearch {
   TrackSearch(const MapView& map, const TrackSettings& settings, const StepLimits& limits)
       : map_(map), settings_(settings), limits_(limits) {}
 
-  /// From now on feature maps were seen from there: locate_from() instead of locate().
+  /// From now on feature maps were seen from there.
   void see_from(const Altitude& altitude) { altitude_ = altitude; }
 
-  /// locate() with the area, threads and calibration of the track in place of those in `options`, within a share of the
-  /// time that the step has left. nullopt where the area is beyond the limit.
+  /// locate_from() with the area, threads and calibration of the track in place of those in `options`, within a share
+  /// of the time that the step has left; over ground whose heights allow too many sizes, all that a search can go over
+  /// from above the believed place. nullopt where the area is beyond the limit.
   std::optional<Fix> find(const FeatureMap& features, const Prior& prior, FixOptions options,
                           double time_share = 1.0) const;
 

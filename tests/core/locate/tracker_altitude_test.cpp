@@ -53,6 +53,26 @@ TEST_F(TrackFromAltitude, FindsNothingInTheSizeOfAnotherHeight) {
   }
 }
 
+TEST_F(TrackFromAltitude, ClaimsPlacesOverGroundWhoseHeightsAllowTooManySizesToSearch) {
+  ground_.east_m = 360.0;
+  view_.terrain = std::make_shared<const Terrain>(ground_.terrain());
+  ASSERT_GT(required_agl(view_, view_.extent, kAboveSeaM).scale_range(), kMaxScaleRange);
+  TrackSettings near = settings();
+  near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};
+  const Tracker tracker(view_, near);
+  Flight flight(map_, start_, 3);
+  int converged = 0;
+  for (int i = 0; i < 30; ++i) {
+    const StepInput step = flight.step();
+    const double agl_m = tracker.agl_m(state_, kAboveSeaM);
+    const TrackEstimate estimate = advance(tracker, taken_from(step, flight.pose(), agl_m));
+    if (!estimate.converged()) continue;
+    ++converged;
+    EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
+  }
+  EXPECT_GE(converged, 8);
+}
+
 TEST_F(TrackFromAltitude, TellsTheHeightAboveTheGroundThatIsBelievedToBeBelow) {
   TrackSettings near = settings();
   near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 50.0};

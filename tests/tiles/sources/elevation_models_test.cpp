@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,7 @@ class ElevationModels : public ::testing::Test {
     for (int row = 0; row < terrain.geometry.rows; ++row) {
       for (int col = 0; col < terrain.geometry.cols; ++col) {
         const auto height = terrain.cell_height_m(col, row);
-        if (!height) return INFINITY;
+        if (!height) return std::numeric_limits<double>::infinity();
         worst = std::max(worst, std::abs(*height - slope_m(terrain.geometry.cell_center(col, row))));
       }
     }

@@ -28,6 +28,7 @@
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/limits.hpp"
+#include "server/api/position_answer.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -212,7 +213,7 @@ void add_fix_command(CLI::App& app) {
           "--alt", o->alt_m,
           "Height above the sea in metres, in place of --agl with --fov or --focal-px, where the map knows how "
           "high its ground is (roadfix terrain)")
-      ->check(between(-1000.0, 50'000.0))
+      ->check(between(api::kAltitude.min, api::kAltitude.max))
       ->excludes("--agl")
       ->excludes("--gsd")
       ->excludes("--exif")

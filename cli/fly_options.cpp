@@ -7,6 +7,7 @@
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
+#include "server/api/position_answer.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -113,7 +114,7 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
                   "The vehicles keep this height above the sea over the ground of the map (roadfix terrain): a frame "
                   "shows --footprint-m where they are --agl above ground")
       ->group(kGroup)
-      ->check(between(-1000.0, 50'000.0));
+      ->check(between(api::kAltitude.min, api::kAltitude.max));
   command
       .add_flag_callback(
           "--no-alt", [&o] { o.tells_alt = false; },

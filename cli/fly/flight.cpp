@@ -61,9 +61,9 @@ class Sight {
   /// Over that which the sensor says; nullopt where the vehicle is not above ground of a known height.
   std::optional<double> size_of_ground(GridPoint point) const {
     if (!plan_.level) return 1.0;
-    const auto ground_m = plan_.level->terrain->height_m(point);
-    if (!ground_m || *ground_m >= plan_.level->above_sea_m) return std::nullopt;
-    return (plan_.level->above_sea_m - *ground_m) / plan_.level->agl_m;
+    const auto agl_m = plan_.level->terrain->height_above_ground_m(point, plan_.level->above_sea_m);
+    if (!agl_m) return std::nullopt;
+    return *agl_m / plan_.level->agl_m;
   }
 
   const FlightPlan& plan_;

@@ -45,6 +45,12 @@ std::optional<double> Terrain::height_m(GridPoint point) const {
   return sum / weights;
 }
 
+std::optional<double> Terrain::height_above_ground_m(GridPoint point, double above_sea_m) const {
+  const auto ground_m = height_m(point);
+  if (!ground_m || *ground_m >= above_sea_m) return std::nullopt;
+  return above_sea_m - *ground_m;
+}
+
 std::optional<HeightRange> Terrain::heights_within(const GridBox& box) const {
   const auto part = GridGeometry::covering(box, geometry.cell_m).padded(1).intersection(geometry);
   if (!part) return std::nullopt;

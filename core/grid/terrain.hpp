@@ -35,6 +35,9 @@ struct Terrain {
   std::optional<double> cell_height_m(int col, int row) const;
   /// Bilinear between the centres of the cells around the point that are known; nullopt where none is.
   std::optional<double> height_m(GridPoint point) const;
+  /// How far what is so high above the sea is above the ground at the point; nullopt where that is unknown, or not
+  /// below.
+  std::optional<double> height_above_ground_m(GridPoint point, double above_sea_m) const;
   /// Of the cells that the box touches, and those next to them; nullopt where none is known.
   std::optional<HeightRange> heights_within(const GridBox& box) const;
 

@@ -25,7 +25,7 @@ double together(double range, double other) { return 1.0 - (1.0 - range) * (1.0 
 Fix unknown_height(const MapView& map, std::string explanation) {
   Fix fix;
   fix.map = map.id;
-  fix.reason = "height-unknown";
+  fix.reason = kHeightUnknown;
   fix.explanation = std::move(explanation);
   return fix;
 }
@@ -33,10 +33,8 @@ Fix unknown_height(const MapView& map, std::string explanation) {
 /// Sizes relative to what they should be at each place, for a search from `agl_m` above ground.
 void relate_to_ground(Fix& fix, const MapView& map, double above_sea_m, double agl_m) {
   for (FixMode& mode : fix.modes) {
-    const auto ground_m = map.terrain->height_m(map.zone.project(mode.pose.position));
-    if (!ground_m || *ground_m >= above_sea_m) continue;
-    mode.agl_m = above_sea_m - *ground_m;
-    mode.scale *= agl_m / *mode.agl_m;
+    mode.agl_m = map.terrain->height_above_ground_m(map.zone.project(mode.pose.position), above_sea_m);
+    if (mode.agl_m) mode.scale *= agl_m / *mode.agl_m;
   }
 }
 

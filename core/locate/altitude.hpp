@@ -9,6 +9,9 @@
 
 namespace roadfix {
 
+/// Fix::reason where the ground of the region leaves any size, or too many.
+inline constexpr const char* kHeightUnknown = "height-unknown";
+
 /// From where a feature map was seen.
 struct Altitude {
   double above_sea_m = 0.0;
@@ -42,7 +45,7 @@ FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m
 ///
 /// The search goes over the sizes that this allows, beside those of options.search.scale_range, up to
 /// kMaxScaleRange; FixMode::scale is relative to the size that follows. no_fix, where it may be any or too many sizes
-/// ("height-unknown"), and where the best place does not show the ground in the size that it should
+/// (kHeightUnknown), and where the best place does not show the ground in the size that it should
 /// ("terrain-contradicts"). Throws as locate().
 Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
                 const Prior& prior, const FixOptions& options);

@@ -41,9 +41,10 @@ std::optional<double> mean_agl_m(const MapView& map, const Particles& particles,
   double weights = 0.0;
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles.weight[i] <= 0.0) continue;
-    const auto ground_m = map.terrain->height_m({particles.east_m[i], particles.north_m[i]});
-    if (!ground_m || *ground_m >= above_sea_m) continue;
-    sum += particles.weight[i] * (above_sea_m - *ground_m);
+    const GridPoint place{particles.east_m[i], particles.north_m[i]};
+    const auto agl_m = map.terrain->height_above_ground_m(place, above_sea_m);
+    if (!agl_m) continue;
+    sum += particles.weight[i] * *agl_m;
     weights += particles.weight[i];
   }
   if (weights <= 0.0) return std::nullopt;

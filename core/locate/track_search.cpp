@@ -19,12 +19,6 @@ bool agrees(const FixMode& mode, const FixMode& fixed, const UtmZone& zone) {
          std::abs(std::log(mode.scale / fixed.scale)) <= kSameSize;
 }
 
-/// Whether the ground of the prior leaves few enough sizes to search.
-bool tells_size(const Altitude& altitude, const MapView& map, const Prior& prior) {
-  const auto agl = agl_above(map, region_of(map, prior).box, altitude.above_sea_m);
-  return agl && agl->scale_range() <= kMaxScaleRange;
-}
-
 }  // namespace
 
 std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& prior, FixOptions options,
@@ -33,11 +27,10 @@ std::optional<Fix> TrackSearch::find(const FeatureMap& features, const Prior& pr
   options.search.threads = limits_.threads;
   options.search.deadline = limits_.deadline.after(time_share);
   options.calibration = settings_.calibration;
-  if (altitude_ && !tells_size(*altitude_, map_, prior)) {
-    options.search.scale_range = kMaxScaleRange;
-    return locate(map_, features, prior, options);
-  }
-  return locate_from(altitude_, map_, features, prior, options);
+  Fix fix = locate_from(altitude_, map_, features, prior, options);
+  if (fix.reason != kHeightUnknown) return fix;
+  options.search.scale_range = kMaxScaleRange;
+  return locate(map_, features, prior, options);
 }
 
 bool TrackSearch::holds_at_other_scales(const Fix& fix, const FeatureMap& features, const Prior& prior) const {

@@ -62,16 +62,17 @@ StepResult Tracker::Step::run() {
   return {std::move(state_), std::move(estimate)};
 }
 
+/// In the size that the ground below the particles has.
+FeatureMap Tracker::Step::seen_from_above_ground(const Altitude& told) {
+  const double agl_m = mean_agl_m(map_, filter_.particles(), told.above_sea_m).value_or(told.agl_m);
+  search_.see_from({told.above_sea_m, agl_m});
+  outcome_.agl_m = agl_m;
+  return seen_from(*input_.features, told, agl_m);
+}
+
 void Tracker::Step::take_in_features() {
-  FeatureMap seen = *input_.features;
-  if (input_.altitude) {
-    const double agl_m =
-        mean_agl_m(map_, filter_.particles(), input_.altitude->above_sea_m).value_or(input_.altitude->agl_m);
-    seen = seen_from(std::move(seen), *input_.altitude, agl_m);
-    search_.see_from({input_.altitude->above_sea_m, agl_m});
-    outcome_.agl_m = agl_m;
-  }
-  features_ = in_cells_of(map_, seen);
+  features_ = input_.altitude ? in_cells_of(map_, seen_from_above_ground(*input_.altitude))
+                              : in_cells_of(map_, *input_.features);
   // The particles do not include this error; it is added to the answer, once.
   state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
 }

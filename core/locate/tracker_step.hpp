@@ -28,6 +28,7 @@ class Tracker::Step {
  private:
   bool is_first() const { return !state_.last; }
   bool begins_known() const { return is_first() && settings_.start_is_known; }
+  FeatureMap seen_from_above_ground(const Altitude& told);
   void take_in_features();
   void begin_or_move();
   void move();

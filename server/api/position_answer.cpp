@@ -65,9 +65,7 @@ const std::vector<std::string>& position_fields() {
   return kFields;
 }
 
-std::optional<double> told_altitude_m(const Fields& fields) {
-  return fields.optional_number("alt_m", {-1000.0, 50'000.0});
-}
+std::optional<double> told_altitude_m(const Fields& fields) { return fields.optional_number("alt_m", kAltitude); }
 
 PositionFormat parse_position_format(const http::Request& request, const Fields& fields) {
   const Media& media = media_asked_for(request, fields, kFormats);

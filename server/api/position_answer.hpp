@@ -19,6 +19,8 @@ namespace roadfix::api {
 /// Names that say how an answer is given; they change nothing of what is found.
 const std::vector<std::string>& position_fields();
 
+inline constexpr Range kAltitude{-1000.0, 50'000.0};
+
 /// Height above the sea ("alt_m").
 std::optional<double> told_altitude_m(const Fields& fields);
 

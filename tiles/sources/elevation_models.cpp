@@ -161,10 +161,7 @@ Terrain terrain_of(const GroundNumbers& ground, const GridGeometry& geometry) {
 }  // namespace
 
 GridGeometry terrain_geometry(const GridBox& ground, std::int64_t most_cells) {
-  const GridBox around = grown(ground, kAroundM);
-  const GridBox box{
-      {std::max(around.min.east_m, kLattice.min.east_m), std::max(around.min.north_m, kLattice.min.north_m)},
-      {std::min(around.max.east_m, kLattice.max.east_m), std::min(around.max.north_m, kLattice.max.north_m)}};
+  const GridBox box = intersection(grown(ground, kAroundM), kLattice);
   for (double cell_m = Terrain::kFinestCellM;; cell_m *= 2.0) {
     const GridGeometry geometry = GridGeometry::covering(box, cell_m);
     if (std::int64_t{geometry.cols} * geometry.rows <= most_cells) return geometry;

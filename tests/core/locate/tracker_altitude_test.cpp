@@ -21,6 +21,22 @@ class TrackFromAltitude : public testing::Track {
     step.features = ground_.taken_for(*std::move(step.features), truth.position, *step.altitude);
     return step;
   }
+  /// So many steps that send what they see in the size that the track asks for; each one that claims is right. Returns
+  /// how many claim.
+  int claims_of(const Tracker& tracker, int steps) {
+    Flight flight(map_, start_, 3);
+    int claims = 0;
+    for (int i = 0; i < steps; ++i) {
+      const StepInput step = flight.step();
+      const double agl_m = tracker.agl_m(state_, kAboveSeaM);
+      const TrackEstimate estimate = advance(tracker, taken_from(step, flight.pose(), agl_m));
+      if (!estimate.converged()) continue;
+      ++claims;
+      EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
+      EXPECT_NEAR(estimate.agl_m.value(), true_agl_m(flight.pose()), 1.5) << "step " << i;
+    }
+    return claims;
+  }
   double true_agl_m(const GridPose& truth) const { return kAboveSeaM - ground_.height_m(truth.position); }
 
   static constexpr double kAboveSeaM = 420.0;
@@ -28,19 +44,7 @@ class TrackFromAltitude : public testing::Track {
 };
 
 TEST_F(TrackFromAltitude, FollowsTheHeightOfTheGroundBelow) {
-  const Tracker tracker(view_, settings());
-  Flight flight(map_, start_, 3);
-  int converged = 0;
-  for (int i = 0; i < 40; ++i) {
-    const StepInput step = flight.step();
-    const double agl_m = tracker.agl_m(state_, kAboveSeaM);
-    const TrackEstimate estimate = advance(tracker, taken_from(step, flight.pose(), agl_m));
-    if (!estimate.converged()) continue;
-    ++converged;
-    EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
-    EXPECT_NEAR(estimate.agl_m.value(), true_agl_m(flight.pose()), 1.5) << "step " << i;
-  }
-  EXPECT_GE(converged, 20);
+  EXPECT_GE(claims_of(Tracker(view_, settings()), 40), 20);
 }
 
 TEST_F(TrackFromAltitude, FindsNothingInTheSizeOfAnotherHeight) {
@@ -59,18 +63,7 @@ TEST_F(TrackFromAltitude, ClaimsPlacesOverGroundWhoseHeightsAllowTooManySizesToS
   ASSERT_GT(required_agl(view_, view_.extent, kAboveSeaM).scale_range(), kMaxScaleRange);
   TrackSettings near = settings();
   near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};
-  const Tracker tracker(view_, near);
-  Flight flight(map_, start_, 3);
-  int converged = 0;
-  for (int i = 0; i < 30; ++i) {
-    const StepInput step = flight.step();
-    const double agl_m = tracker.agl_m(state_, kAboveSeaM);
-    const TrackEstimate estimate = advance(tracker, taken_from(step, flight.pose(), agl_m));
-    if (!estimate.converged()) continue;
-    ++converged;
-    EXPECT_LT(error_m(estimate, flight.pose()), 10.0) << "step " << i;
-  }
-  EXPECT_GE(converged, 8);
+  EXPECT_GE(claims_of(Tracker(view_, near), 30), 8);
 }
 
 TEST_F(TrackFromAltitude, TellsTheHeightAboveTheGroundThatIsBelievedToBeBelow) {

@@ -92,11 +92,9 @@ Search search_of(const FixArguments& options, bool several) {
       view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit, options.input, {}};
   // Before the frame, in which roads are looked for.
   const PoseRegion region = search_region(search.view, search.prior, options.fix);
-  if (options.alt_m) {
-    const double agl_m = required_agl(search.view, region.box, *options.alt_m).middle_m();
-    search.input.frame.camera.agl_m = agl_m;
-    search.altitude = Altitude{*options.alt_m, agl_m};
-  }
+  double& agl_m = search.input.frame.camera.agl_m;
+  if (options.alt_m) agl_m = required_agl(search.view, region.box, *options.alt_m).middle_m();
+  if (agl_m > 0.0) search.altitude = Altitude{options.alt_m, agl_m};
   if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
   return search;
 }
@@ -107,7 +105,7 @@ Fix located(const Search& search, api::Features& input, OnProgress progress = {}
   options.left_out = input.left_out;
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);
-  return locate_from(search.altitude, search.view, input.map, search.prior, options);
+  return locate_levelled(search.altitude, search.view, input.map, search.prior, options);
 }
 
 void fix_one(const FixArguments& options, const std::filesystem::path& picture) {

@@ -51,19 +51,22 @@ class Sight {
 
   Observation at(int step, const GridPose& pose) const {
     Random random = camera_stream(seed_, step);
-    const auto size = size_of_ground(pose.position);
-    if (!frame_comes(plan_, step, random) || !size) return {};
-    return sensor_.observe({{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading},
-                           scale_ * *size, random);
+    const auto from = outlook(pose);
+    if (!frame_comes(plan_, step, random) || !from) return {};
+    return sensor_.observe(*from, random);
   }
 
  private:
-  /// Over that which the sensor says; nullopt where the vehicle is not above ground of a known height.
-  std::optional<double> size_of_ground(GridPoint point) const {
-    if (!plan_.level) return 1.0;
-    const auto agl_m = plan_.level->terrain->height_above_ground_m(point, plan_.level->above_sea_m);
+  /// nullopt where the vehicle is not above ground of a known height.
+  std::optional<Outlook> outlook(const GridPose& pose) const {
+    Outlook from{{{pose.position.east_m + off_.east_m, pose.position.north_m + off_.north_m}, pose.heading}, scale_};
+    if (!plan_.level) return from;
+    const Terrain& terrain = *plan_.level->terrain;
+    const auto agl_m = terrain.height_above_ground_m(pose.position, plan_.level->above_sea_m);
     if (!agl_m) return std::nullopt;
-    return *agl_m / plan_.level->agl_m;
+    from.scale *= *agl_m / plan_.level->agl_m;
+    from.relief = Relief(terrain, pose, *agl_m);
+    return from;
   }
 
   const FlightPlan& plan_;
@@ -106,7 +109,7 @@ Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Senso
     Observation seen_now = sight.at(step, vehicle.pose());
     input.features = std::move(seen_now.features);
     input.frame = std::move(seen_now.frame);
-    if (plan.level && plan.level->is_told) input.altitude = Altitude{plan.level->above_sea_m, plan.level->agl_m};
+    if (plan.level) input.altitude = Altitude{plan.level->told_m(), plan.level->agl_m};
     flight.push_back({vehicle.pose(), std::move(input)});
     seen();
   }

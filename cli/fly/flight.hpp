@@ -23,12 +23,14 @@ struct Kidnapping {
 };
 
 /// A vehicle that keeps its height above the sea over ground that is not level: what it sees is as large as its height
-/// above the ground there makes it.
+/// above the ground there makes it, and displaced by the relief of the ground.
 struct LevelFlight {
   std::shared_ptr<const Terrain> terrain;  ///< never nullptr
   double above_sea_m = 0.0;
   double agl_m = 0.0;   ///< from which a frame shows as much ground as the sensor says, and which frames are made for
   bool is_told = true;  ///< that height above the sea; else the vehicle is said to be agl_m above ground
+
+  std::optional<double> told_m() const { return is_told ? std::optional(above_sea_m) : std::nullopt; }
 };
 
 struct FlightPlan {

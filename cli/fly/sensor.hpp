@@ -13,6 +13,7 @@
 #include "core/detect/orthoimage.hpp"
 #include "core/detect/road_detector.hpp"
 #include "core/grid/feature_map.hpp"
+#include "core/grid/relief.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/locate/simulate.hpp"
 
@@ -37,12 +38,18 @@ struct Observation {
   FrameSource frame;
 };
 
+/// From where the ground is looked at.
+struct Outlook {
+  GridPose pose;
+  double scale = 1.0;                 ///< the ground is so many times as large as the observation will say
+  std::optional<Relief> relief = {};  ///< nullopt = it is level
+};
+
 class Sensor {
  public:
   virtual ~Sensor() = default;
-  /// `scale`: the ground that is seen is so many times as large as the observation says. Safe to call from several
-  /// threads with generators of their own.
-  virtual Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const = 0;
+  /// Safe to call from several threads with generators of their own.
+  virtual Observation observe(const Outlook& from, evaluation::Random& random) const = 0;
   /// Whether the middle of the frame would show ground.
   virtual bool shows(GridPoint point) const = 0;
 };

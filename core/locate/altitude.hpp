@@ -1,5 +1,5 @@
-// Height above ground from the height above the sea, where the map knows the heights of its ground (MapView::terrain).
-// Where the ground is not level, how large it is seen follows from where the vehicle is.
+// Ground that is not level, where the map knows its heights (MapView::terrain): how large it is seen by a vehicle that
+// knows its height above the sea follows from where that is, and so does how its relief displaces what is seen.
 #pragma once
 
 #include <optional>
@@ -14,7 +14,7 @@ inline constexpr const char* kHeightUnknown = "height-unknown";
 
 /// From where a feature map was seen.
 struct Altitude {
-  double above_sea_m = 0.0;
+  std::optional<double> above_sea_m;  ///< nullopt = agl_m is right
   /// The height above ground by which its cells were given a size, above 0.
   double agl_m = 0.0;
 };
@@ -41,7 +41,7 @@ AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m
 FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m);
 
 /// locate(), where the size of what `features` and `options.own_frame` show follows from the altitude and the ground
-/// below each place; nullopt = they have it.
+/// below each place; nullopt, of it or its height above the sea = they have it.
 ///
 /// The search goes over the sizes that this allows, beside those of options.search.scale_range, up to
 /// kMaxScaleRange; FixMode::scale is relative to the size that follows. no_fix, where it may be any or too many sizes
@@ -49,5 +49,11 @@ FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m
 /// ("terrain-contradicts"). Throws as locate().
 Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
                 const Prior& prior, const FixOptions& options);
+
+/// locate_from(), and where the relief around the best place displaces what was seen, once more with the features
+/// levelled (core/grid/relief.hpp). The second search has to find that place again; if not, it is no likely one
+/// ("terrain-contradicts"). Frames that were laid together are not levelled, nor is anything by no altitude at all.
+Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
+                    const Prior& prior, const FixOptions& options);
 
 }  // namespace roadfix

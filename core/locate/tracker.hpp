@@ -31,7 +31,8 @@ struct StepInput {
   /// Equal for the same picture, whatever height and attitude it is measured by: tells a camera or a link that has
   /// stopped. nullopt = the features were found elsewhere.
   std::optional<std::uint64_t> picture = {};
-  /// From where, if the size of what they show follows from that and the ground below the vehicle. The map has heights.
+  /// From where, if they show the ground in its relief; if the height above the sea is told, their size follows from
+  /// that and the ground below the vehicle, and the map has heights.
   std::optional<Altitude> altitude = {};
 };
 

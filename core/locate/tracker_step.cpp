@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/grid/relief.hpp"
 #include "core/locate/convergence.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/particle_likelihoods.hpp"
@@ -19,6 +20,13 @@ constexpr double kWidenedM = 4.0;
 
 constexpr double kLongestGapS = 600.0;  // after a longer one the belief is thrown away
 constexpr double kLeastKept = 0.99;     // of the weight: the vehicle may be among the particles that left the region
+
+/// Seen from all of it a frame is displaced alike by the relief of the ground.
+bool is_narrow(const Cluster& belief) {
+  constexpr double kSigmaM = 30.0;
+  constexpr double kTurnRad = 0.15;
+  return belief.sigma_m() <= kSigmaM && belief.covariance[2][2] <= kTurnRad * kTurnRad;
+}
 
 ToldMotion told_motion(const TrackerState& before, const StepInput& input) {
   if (!before.last) return {input.odometry, input.covariance, 0.0, 0};
@@ -62,12 +70,19 @@ StepResult Tracker::Step::run() {
   return {std::move(state_), std::move(estimate)};
 }
 
-/// In the size that the ground below the particles has.
+/// In the size that the ground below the particles has, and levelled where frames have told what lies around them.
 FeatureMap Tracker::Step::seen_from_above_ground(const Altitude& told) {
-  const double agl_m = mean_agl_m(map_, filter_.particles(), told.above_sea_m).value_or(told.agl_m);
-  search_.see_from({told.above_sea_m, agl_m});
-  outcome_.agl_m = agl_m;
-  return seen_from(*input_.features, told, agl_m);
+  const Particles& particles = filter_.particles();
+  double agl_m = told.agl_m;
+  if (told.above_sea_m) {
+    agl_m = mean_agl_m(map_, particles, *told.above_sea_m).value_or(agl_m);
+    search_.see_from({told.above_sea_m, agl_m});
+    outcome_.agl_m = agl_m;
+  }
+  FeatureMap seen = seen_from(*input_.features, told, agl_m);
+  if (!map_.terrain || !state_.claim.outweighs_chance()) return seen;
+  const Cluster belief = heaviest_of(particles);
+  return is_narrow(belief) ? levelled(seen, Relief(*map_.terrain, belief.mean, agl_m)) : seen;
 }
 
 void Tracker::Step::take_in_features() {

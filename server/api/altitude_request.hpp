@@ -1,4 +1,4 @@
-// A frame of which the height above the sea is told instead of that above ground.
+// From which height a frame was taken: above ground, or above the sea instead.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,9 @@ namespace roadfix::api {
 /// Height above ground at a height above the sea, both in metres.
 using AglOf = std::function<double(double above_sea_m)>;
 
-/// Of a camera's frame with `alt_m` and without a height above ground, which the fields have from then on: the one that
-/// `agl_of` gives. nullopt where the size of what is sent is told otherwise. Throws InvalidField, and what `agl_of`
-/// throws.
+/// Of a camera's frame, by `agl_m`, or by `alt_m` alone: the fields have a height above ground from then on, the one
+/// that `agl_of` gives. nullopt where the size of what is sent is told otherwise. Throws InvalidField, and what
+/// `agl_of` throws.
 std::optional<Altitude> take_altitude(Fields& fields, const AglOf& agl_of);
 
 }  // namespace roadfix::api

@@ -60,7 +60,7 @@ FrameCamera told_camera(const Fields& fields) {
 }
 
 KnownView known_view(const Fields& fields) {
-  return {fields.optional_number("agl_m", kHeight), fields.optional_angle("roll_deg", kQuarterTurn),
+  return {told_agl_m(fields), fields.optional_angle("roll_deg", kQuarterTurn),
           fields.optional_angle("pitch_deg", kQuarterTurn)};
 }
 
@@ -70,6 +70,8 @@ const std::vector<std::string>& frame_scale_fields() {
   static const std::vector<std::string> kFields = joined({{"gsd_m", "exif"}, lens_fields(), view_fields()});
   return kFields;
 }
+
+std::optional<double> told_agl_m(const Fields& fields) { return fields.optional_number("agl_m", kHeight); }
 
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture) {
   const bool exif = fields.flag("exif");

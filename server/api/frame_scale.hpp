@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,6 +16,9 @@
 namespace roadfix::api {
 
 const std::vector<std::string>& frame_scale_fields();
+
+/// Height above ground, where told. Throws InvalidField.
+std::optional<double> told_agl_m(const Fields& fields);
 
 /// `picture` are the bytes of the frame's file. Throws InvalidField, and what camera_of(DronePicture) throws.
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);

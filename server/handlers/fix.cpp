@@ -54,7 +54,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const SearchThreads::Share share(service.search_threads);
   options.search.threads = share.threads();
   options.search.deadline = api::search_end(request.deadline, hang_up.token()).within(time_limit);
-  const auto answer = api::to_json(locate_from(altitude, map->view, features.map, prior, options), features);
+  const auto answer = api::to_json(locate_levelled(altitude, map->view, features.map, prior, options), features);
   const std::string status = answer.at("status");
   service.metrics.count(kAnswers, fmt::format("kind=\"fix\",status=\"{}\"", status));
   http::Response response =

@@ -28,7 +28,7 @@ struct SlopingGround {
   }
   /// What shows the ground below the point as it is, as somebody makes it who takes the vehicle to be at that altitude.
   FeatureMap taken_for(FeatureMap seen, GridPoint point, const Altitude& altitude) const {
-    seen.cell_m *= altitude.agl_m / (altitude.above_sea_m - height_m(point));
+    seen.cell_m *= altitude.agl_m / (*altitude.above_sea_m - height_m(point));
     return seen;
   }
 };

@@ -23,7 +23,7 @@ const GridBox kBox{{600'500.0, 6'399'000.0}, {601'500.0, 6'400'000.0}};
 /// Shows everything, sees one cell.
 class Window : public Sensor {
  public:
-  Observation observe(const GridPose&, double, evaluation::Random& random) const override {
+  Observation observe(const Outlook&, evaluation::Random& random) const override {
     return {FeatureMap::centred(CellArray(1, 1, static_cast<Cell>(random() % 200)), 2.0), {}};
   }
   bool shows(GridPoint) const override { return true; }
@@ -32,10 +32,10 @@ class Window : public Sensor {
 /// Remembers where and how it was looked.
 class Witness : public Window {
  public:
-  Observation observe(const GridPose& pose, double scale, evaluation::Random& random) const override {
-    places.push_back(pose.position);
-    scales.push_back(scale);
-    return Window::observe(pose, scale, random);
+  Observation observe(const Outlook& from, evaluation::Random& random) const override {
+    places.push_back(from.pose.position);
+    scales.push_back(from.scale);
+    return Window::observe(from, random);
   }
   mutable std::vector<GridPoint> places;
   mutable std::vector<double> scales;
@@ -168,10 +168,8 @@ TEST_F(Flights, AboveTheSeaShowGroundAsLargeAsItsHeightMakesIt) {
     for (std::size_t i = 0; i < flight.size(); ++i) {
       const double agl_m = 460.0 - ground.height_m(flight[i].truth.position);
       EXPECT_NEAR(witness.scales[i], agl_m / 250.0, 0.002);
-      ASSERT_EQ(flight[i].input.altitude.has_value(), is_told);
-      if (is_told) {
-        EXPECT_EQ(flight[i].input.altitude->above_sea_m, 460.0);
-      }
+      ASSERT_TRUE(flight[i].input.altitude);
+      EXPECT_EQ(flight[i].input.altitude->above_sea_m, is_told ? std::optional(460.0) : std::nullopt);
     }
   }
 }

@@ -46,8 +46,8 @@ TEST(Camera, TakesThePictureInWhichTheVehicleItselfWouldDetectRoadsAndTheSameOne
   const DetectorWitness witness;
   evaluation::Random one(7);
   evaluation::Random other(7);
-  const Observation detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->observe(kPose, 1.0, one);
-  const Observation sent = make_camera(imagery, kFootprint, {}, 2.0)->observe(kPose, 1.0, other);
+  const Observation detected = make_imaging_sensor(imagery, witness, kFootprint, {}, 2.0)->observe({kPose}, one);
+  const Observation sent = make_camera(imagery, kFootprint, {}, 2.0)->observe({kPose}, other);
   EXPECT_TRUE(detected.features);
   EXPECT_FALSE(detected.frame);
   EXPECT_EQ(witness.told_seed, kDetectorSeed);

@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "core/grid/relief.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 #include "tests/support/sloping_ground.hpp"
 
@@ -64,6 +65,32 @@ TEST_F(TrackFromAltitude, ClaimsPlacesOverGroundWhoseHeightsAllowTooManySizesToS
   TrackSettings near = settings();
   near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};
   EXPECT_GE(claims_of(Tracker(view_, near), 30), 8);
+}
+
+TEST_F(TrackFromAltitude, LevelsWhatItSeesOfASlope) {
+  constexpr double kAboveSlopeM = 680.0;
+  ground_.east_m = 560.0;
+  view_.terrain = std::make_shared<const Terrain>(ground_.terrain());
+  TrackSettings near = settings();
+  near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 100.0};
+  const Tracker tracker(view_, near);
+  const auto mean_error_m = [&](bool tells_altitude) {
+    state_ = {};
+    Flight flight(map_, start_, 3);
+    flight.side_cells = 180;
+    double sum_m = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      StepInput step = flight.step();
+      const double agl_m = kAboveSlopeM - ground_.height_m(flight.pose().position);
+      step.features = shown_in_relief(*step.features, Relief(*view_.terrain, flight.pose(), agl_m), 128, 128);
+      if (tells_altitude) step.altitude = Altitude{kAboveSlopeM, agl_m};
+      const TrackEstimate estimate = advance(tracker, step);
+      if (i >= 10) sum_m += error_m(estimate, flight.pose());
+    }
+    return 0.1 * sum_m;
+  };
+  EXPECT_GT(mean_error_m(false), 2.0) << "in the right size, but displaced by up to 14 m";
+  EXPECT_LT(mean_error_m(true), 1.0);
 }
 
 TEST_F(TrackFromAltitude, TellsTheHeightAboveTheGroundThatIsBelievedToBeBelow) {

@@ -1,0 +1,119 @@
+#include "core/grid/relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/grid/sampling.hpp"
+
+namespace roadfix {
+namespace {
+
+using CellPosition = GridGeometry::CellPosition;
+
+constexpr double kLeastStretch = 0.5;
+constexpr double kMostStretch = 2.0;
+
+/// Cells around the nadir: so many to its left and right, before and behind it.
+struct Extent {
+  double left = 0.0, right = 0.0, before = 0.0, behind = 0.0;
+
+  void reach(double col, double row) {
+    left = std::max(left, -col);
+    right = std::max(right, col);
+    before = std::max(before, -row);
+    behind = std::max(behind, row);
+  }
+};
+
+/// Visits places along the edges, in cells from the nadir.
+template <typename Visit>
+void along_edges(const FeatureMap& features, const Visit& visit) {
+  const double right = features.cells.cols() - features.nadir.col;
+  const double behind = features.cells.rows() - features.nadir.row;
+  for (int col = 0; col <= features.cells.cols(); ++col) {
+    visit(col - features.nadir.col, -features.nadir.row);
+    visit(col - features.nadir.col, behind);
+  }
+  for (int row = 0; row <= features.cells.rows(); ++row) {
+    visit(-features.nadir.col, row - features.nadir.row);
+    visit(right, row - features.nadir.row);
+  }
+}
+
+/// Each cell from where `source_of` says, both in cells from the nadir.
+template <typename SourceOf>
+CellArray resampled_about(CellPosition nadir, const FeatureMap& source, int cols, int rows, const SourceOf& source_of) {
+  CellArray cells(cols, rows);
+  for (int row = 0; row < rows; ++row) {
+    for (int col = 0; col < cols; ++col) {
+      const CellPosition from = source_of(col + 0.5 - nadir.col, row + 0.5 - nadir.row);
+      cells.at(col, row) = bilinear(source.cells, {source.nadir.col + from.col, source.nadir.row + from.row});
+    }
+  }
+  return cells;
+}
+
+}  // namespace
+
+Relief::Relief(const Terrain& terrain, const GridPose& pose, double agl_m)
+    : terrain_(&terrain),
+      nadir_(pose.position),
+      sin_(sin(pose.heading)),
+      cos_(cos(pose.heading)),
+      agl_m_(agl_m),
+      level_m_(terrain.height_m(pose.position).value_or(std::numeric_limits<double>::quiet_NaN())) {}
+
+double Relief::stretch_of(double right_m, double back_m) const {
+  const auto height_m = terrain_->height_m(
+      {nadir_.east_m + cos_ * right_m - sin_ * back_m, nadir_.north_m - sin_ * right_m - cos_ * back_m});
+  if (!height_m || std::isnan(level_m_)) return 1.0;
+  const double share = (*height_m - level_m_) / agl_m_;
+  return 1.0 / std::clamp(1.0 - share, 1.0 / kMostStretch, 1.0 / kLeastStretch);
+}
+
+double Relief::stretch_at(double right_m, double back_m) const {
+  constexpr int kSteps = 4;  // each leaves of the error the share that the slope is of the line of sight
+  double stretch = 1.0;
+  for (int k = 0; k < kSteps; ++k) stretch = stretch_of(right_m / stretch, back_m / stretch);
+  return stretch;
+}
+
+double Relief::largest_shift_m(const FeatureMap& features) const {
+  double largest_m = 0.0;
+  along_edges(features, [&](double col, double row) {
+    const double stretch = stretch_at(features.cell_m * col, features.cell_m * row);
+    largest_m = std::max(largest_m, features.cell_m * std::hypot(col, row) * std::abs(1.0 - 1.0 / stretch));
+  });
+  return largest_m;
+}
+
+FeatureMap levelled(const FeatureMap& features, const Relief& relief) {
+  const double cell_m = features.cell_m;
+  Extent extent;
+  along_edges(features, [&](double col, double row) {
+    const double stretch = relief.stretch_at(cell_m * col, cell_m * row);
+    extent.reach(col / stretch, row / stretch);
+  });
+  FeatureMap level = features;
+  level.nadir = {std::ceil(extent.left), std::ceil(extent.before)};
+  const int cols = std::max(1, static_cast<int>(level.nadir.col + std::ceil(extent.right)));
+  const int rows = std::max(1, static_cast<int>(level.nadir.row + std::ceil(extent.behind)));
+  level.cells = resampled_about(level.nadir, features, cols, rows, [&](double col, double row) {
+    const double stretch = relief.stretch_of(cell_m * col, cell_m * row);
+    return CellPosition{stretch * col, stretch * row};
+  });
+  return level;
+}
+
+FeatureMap shown_in_relief(const FeatureMap& ground, const Relief& relief, int cols, int rows) {
+  FeatureMap shown = ground;
+  shown.nadir = {0.5 * cols, 0.5 * rows};
+  shown.cells = resampled_about(shown.nadir, ground, cols, rows, [&](double col, double row) {
+    const double stretch = relief.stretch_at(ground.cell_m * col, ground.cell_m * row);
+    return CellPosition{col / stretch, row / stretch};
+  });
+  return shown;
+}
+
+}  // namespace roadfix

@@ -5,7 +5,7 @@ import urllib.parse
 
 from places import told_place
 from service import Service, Silent
-from steps import PICTURE_FIELDS, POSITION_FIELDS
+from steps import LENS_FIELDS, PICTURE_FIELDS, POSITION_FIELDS
 
 PATIENCE_S = 3.0
 LEAST_DEGREE_M = 110_500.0  # of latitude; that of places makes distances too long
@@ -21,7 +21,7 @@ def check(url, request, frame_fields):
     service = Service(url, PATIENCE_S)
     unchecked = "nothing"
     try:
-        _check_map(request, service)
+        _check_map(request, frame_fields, service)
         unchecked = "nothing more"
         ready = service.ask_object(("status",), "GET", "/readyz")
     except Silent as silent:
@@ -35,13 +35,20 @@ def check(url, request, frame_fields):
     return can_follow
 
 
-def _check_map(request, service):
+def _check_map(request, frame_fields, service):
     found = service.ask_object(("status",), "GET", "/v1/maps/" + urllib.parse.quote(request["map"], safe=""))
     if not found.get("bbox"):
         raise ValueError(f"the map '{request['map']}' shows nothing: its status is '{found['status']}'")
     _require_near(request, found["bbox"])
     status = "" if found["status"] == "ready" else f", {found['status']}"
-    print(f"the map '{request['map']}' has version {found.get('version')}{status}", file=sys.stderr)
+    heights = "" if "terrain" in found or not _leaves_height_to_lines(frame_fields) else \
+        "; it does not know how high its ground is: lines of pictures need agl_m, alt_m alone will not do"
+    print(f"the map '{request['map']}' has version {found.get('version')}{status}{heights}", file=sys.stderr)
+
+
+def _leaves_height_to_lines(frame_fields):
+    """That of a camera, by agl_m or alt_m."""
+    return any(name in frame_fields for name in LENS_FIELDS) and "agl_m" not in frame_fields
 
 
 def _require_near(request, bbox):

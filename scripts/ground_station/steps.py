@@ -9,7 +9,8 @@ from typing import NamedTuple, Optional
 from silence import FORGOTTEN_S
 
 PLACE = ("north_m", "east_m", "yaw_deg")
-CAMERA_FIELDS = ("gsd_m", "fov_deg", "focal_px", "exif")
+LENS_FIELDS = ("fov_deg", "focal_px")
+CAMERA_FIELDS = (*LENS_FIELDS, "gsd_m", "exif")
 PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "agl_m", "roll_deg", "pitch_deg",
                                   "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m",
                                   "nadir_heading_sigma_deg")

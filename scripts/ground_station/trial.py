@@ -3,7 +3,7 @@ import base64
 import sys
 
 from service import Refused
-from steps import CAMERA_FIELDS, with_kind
+from steps import CAMERA_FIELDS, LENS_FIELDS, with_kind
 from track import as_query, begin_track, end_track
 
 #: A PNG of one black pixel. The service looks at what describes a picture only where there is one.
@@ -40,6 +40,6 @@ def _picture_fields(frame_fields):
     fields = with_kind(frame_fields)
     if not any(name in fields for name in WHAT_PICTURES_ARE):
         fields = {**fields, "kind": "frame"}
-    if any(name in fields for name in ("fov_deg", "focal_px")):
+    if any(name in fields for name in LENS_FIELDS):
         fields = {"agl_m": AGL_M, **fields}
     return fields

@@ -69,6 +69,19 @@ class BeforeTheFlight(unittest.TestCase):
             self.assertIn("--frame satelites: no such field of a step", words)
             self.assertEqual(self.checked(fake, "--frame", "fov_deg=78", "satellites=10", "exif=true")[0], 0)
 
+    def test_lines_are_said_to_need_a_height_above_ground_where_the_map_knows_no_heights(self):
+        camera = ("--frame", "fov_deg=78")
+        for frame, terrain, is_said in ((camera, {}, True), (("--frame", "focal_px=900", "alt_m=1200"), {}, True),
+                                        (camera, {"terrain": {"lowest_m": 500.0, "highest_m": 518.0}}, False),
+                                        ((*camera, "agl_m=300"), {}, False), (("--frame", "gsd_m=0.5"), {}, False),
+                                        (("--frame", "exif=true"), {}, False), ((), {}, False)):
+            with FakeService() as fake:
+                fake.map = (200, {**fake.map[1], **terrain})
+                for check in ((), ("--check",)):
+                    status, words = self.checked(fake, *frame, *check)
+                    self.assertEqual(status, 0)
+                    self.assertEqual("lines of pictures need agl_m, alt_m alone will not do" in words, is_said, frame)
+
     def test_what_no_track_can_begin_with_is_told_by_a_check(self):
         for refusal, words in (((400, {"code": "missing-parameter", "detail": "'lon' is missing"}),
                                 "ground_station: --track: 400 missing-parameter: 'lon' is missing"),
@@ -86,6 +99,7 @@ class BeforeTheFlight(unittest.TestCase):
         for refusal, expected, words in ((wrong, 1, "--frame: 400 bad-parameter: 'fov_deg' must be a number"),
                                          ((422, {"code": "frame-too-coarse"}), 0, None), (200, 0, None)):
             with FakeService([refusal]) as fake:
+                fake.map = (200, {**fake.map[1], "terrain": {}})
                 status, told = self.checked(fake, "--frame", "fov_deg=seventy", "--check")
                 self.assertEqual(status, expected)
                 self.assertRegex(told, f"^{BEFORE}" + (rf"\S+Z ground_station: {words}\n$" if words else "$"))

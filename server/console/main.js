@@ -19,7 +19,8 @@ const MAPS_REFRESH_MS = 10_000;
 const PATIENCE_MS = 5000;
 const mapQuestions = new LastQuestion();
 let shown = null;  // the map on the page, see maps.js
-let lines = '';    // of the list of maps, as JSON
+let listed = [];   // the maps as the service had them last
+let lines = '';    // of their list on the page, as JSON
 let tiles = null;
 let listsAsked = 0;
 let wished = null;  // the map that the next list is to show, if it is served
@@ -70,6 +71,7 @@ async function openMap() {
 
 /// Keeps the list as the service has it and the choice as the operator left it.
 async function showMaps({ maps }) {
+  listed = maps;
   const chosen = choiceOf(maps, by('maps').value, wished);
   const missed = wished === chosen ? null : wished;
   wished = null;
@@ -85,6 +87,7 @@ async function showMaps({ maps }) {
   by('maps').value = chosen;
   if (chosen === null) by('about').textContent = 'No map is in the folder yet: roadfix ingest makes one.';
   by('ask').querySelector('button').disabled = chosen === null;
+  enableChosen(by('ask'));
   answer.mapsChanged(maps);
   const step = stepTo(maps, chosen, shown);
   if (step === 'open') await openMap();
@@ -113,11 +116,14 @@ function wishMap(name) {
   refreshMaps();
 }
 
-/// Only numbers of the chosen kind of picture and place count: a mistake in one that is not shown must not hold up others.
+/// Only numbers of the chosen kind of picture, place and map count: a mistake in one that is not shown must not hold up
+/// others.
 function enableChosen(form) {
   const { what, prior } = form.elements;
+  const knowsHeights = listed.some(({ name, terrain }) => name === by('maps').value && terrain);
+  const counts = [`of-${what.value}`, `of-${prior.value}`, knowsHeights && 'of-heights'];
   for (const input of form.querySelectorAll('[class^=of-] input')) {
-    input.disabled = ![what.value, prior.value].some((chosen) => input.parentElement.className === `of-${chosen}`);
+    input.disabled = !input.parentElement.className.split(' ').every((name) => counts.includes(name));
   }
 }
 
@@ -166,6 +172,7 @@ function acceptDrops(zone, input) {
 by('maps').addEventListener('change', () => {
   wished = null;
   keepAddress();
+  enableChosen(by('ask'));
   attempt(by('about'), openMap);
 });
 by('tracks').addEventListener('change', () => follow(by('tracks').value));

@@ -4,6 +4,7 @@
 export function queryOf(form, centre) {
   const { picture, what, prior, scale_percent: percent, ...numbers } = Object.fromEntries(form);
   if (numbers.focal_px) delete numbers.fov_deg;
+  if (numbers.alt_m) delete numbers.agl_m;
   const told = Object.entries(numbers).filter(([, value]) => value !== '');
   const query = new URLSearchParams([['kind', what === 'cells' ? 'feature_map' : 'frame'], ...told]);
   if (what === 'exif') query.set('exif', true);

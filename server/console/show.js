@@ -144,6 +144,7 @@ export function showFix(output, fix, picture) {
   if (fix.pose) {
     rows.push(['lat, lon', place(fix.pose)], ['heading, true', headingText(fix.pose, fix.heading_sigma_deg)]);
     rows.push(['σ', fix.sigma_m.map((s) => s.toFixed(1)).join(' × ') + ' m; drawn: 95 %']);
+    if (fix.agl_m) rows.push(['above ground', `${fix.agl_m.toFixed(0)} m, by the height above the sea`]);
   } else if (fix.modes.length) {
     rows.push(['hints', `${fix.modes.length}, not to be flown on`]);
   }

@@ -44,6 +44,13 @@ await run({
     assert.deepEqual(colours(), [RED, RED]);
     assert.equal(view.moved, null);
   },
+  async 'a fix of a height above the sea says how high above ground that is'() {
+    await ask();
+    assert.doesNotMatch(output.textContent, /above ground/);
+    service.answers = { '/fix': { ...fix, agl_m: 319.6 } };
+    await answer.ask('/fix', picture('a.png'));
+    assert.match(output.textContent, /above ground\n320 m/);
+  },
   async 'a fix says the day and the zone of its time'() {
     await ask();
     const date = new Date();

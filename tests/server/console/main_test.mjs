@@ -5,8 +5,9 @@ import { drawn, load, node, run, service, view } from './page.mjs';
 const parts = {};
 const by = (id) => (parts[id] ??= node());
 const button = {};
+const [agl, alt] = ['of-camera', 'of-camera of-heights'].map((className) => ({ parentElement: { className } }));
 const fields = { what: { value: 'gsd' }, prior: { value: 'map' }, radius_m: { value: '1000' }, picture: node() };
-Object.assign(by('ask'), { elements: fields, querySelector: () => button, querySelectorAll: () => [] });
+Object.assign(by('ask'), { elements: fields, querySelector: () => button, querySelectorAll: () => [agl, alt] });
 Object.assign(document, { getElementById: by, hidden: false });
 
 const circle = { remove() {} };
@@ -73,6 +74,25 @@ await run({
     await acts.focus();
     assert.deepEqual(tiles(), ['/v1/maps/town/tiles/{z}/{x}/{y}.png?version=2']);
     assert.equal(view.box, null);
+  },
+  async 'a height above the sea is asked for of a camera over a map that knows the heights of its ground'() {
+    const asksFor = () => [agl, alt].map(({ disabled }) => !disabled);
+    const choose = async (name) => {
+      by('maps').value = name;
+      by('maps').listeners.change();
+      await settled();
+    };
+    service.answers['/v1/maps'] = { maps: [{ ...listed('city'), terrain: { lowest_m: 500, highest_m: 518 } }, listed('town', '2')] };
+    await acts.focus();
+    assert.deepEqual(asksFor(), [false, false]);
+    fields.what.value = 'camera';
+    by('ask').listeners.input();
+    assert.deepEqual(asksFor(), [true, false]);
+    await choose('city');
+    assert.deepEqual(asksFor(), [true, true]);
+    service.answers['/v1/maps'] = { maps: [listed('city'), listed('town', '2')] };
+    await acts.focus();
+    assert.deepEqual(asksFor(), [true, false], 'the heights were taken out of the map');
   },
   async 'a service that does not answer is said to be away, until it answers again'() {
     const answers = service.answers;

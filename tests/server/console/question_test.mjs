@@ -20,6 +20,10 @@ await run({
   'a focal length counts for more than the angle that stands in the form'() {
     assert.deepEqual(asked({ what: 'camera', fov_deg: '78', focal_px: '900', agl_m: '300' }), { kind: 'frame', focal_px: '900', agl_m: '300' });
   },
+  'a height above the sea counts for more than the one above ground that stands in the form'() {
+    assert.deepEqual(asked({ what: 'camera', fov_deg: '78', agl_m: '300', alt_m: '930' }), { kind: 'frame', fov_deg: '78', alt_m: '930' });
+    assert.deepEqual(asked({ what: 'camera', fov_deg: '78', agl_m: '300', alt_m: '' }), { kind: 'frame', fov_deg: '78', agl_m: '300' });
+  },
   'a photo tells of its camera itself, and a size of the ground in per cent is told as a share'() {
     assert.deepEqual(asked({ what: 'exif', agl_m: '', scale_percent: '15' }), { kind: 'frame', exif: 'true', scale_range: '0.15' });
   },

@@ -67,21 +67,22 @@ CellArray map_under(const MapView& map, const FeatureMap& features, const GridPo
 cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imagery, const Query& query,
                           const FeatureMap& features, const Answer& answer) {
   const CellArray nothing(features.cells.cols(), features.cells.rows(), kNoRoad);
+  const auto at = [&](const GeoPose& place) { return seen_above(place, query, features, map); };
   std::vector<Panel> panels;
   if (query.truth) {
-    const cv::Mat before = ground_before(imagery, features, on_grid(*query.truth, map.zone));
+    const cv::Mat before = ground_before(imagery, at(*query.truth), on_grid(*query.truth, map.zone));
     if (!before.empty()) panels.push_back({"before", before});
   }
   if (query.view) panels.push_back({"after", query.view->image.pixels});
   CellArray there;
   if (query.truth) {
-    there = map_under(map, features, on_grid(*query.truth, map.zone));
+    there = map_under(map, at(*query.truth), on_grid(*query.truth, map.zone));
     panels.push_back({"roads before", agreement(there, nothing)});
   }
   panels.push_back({"roads after", agreement(nothing, features.cells)});
   if (query.truth) panels.push_back({"both, true place", agreement(there, features.cells)});
   if (answer.best) {
-    const CellArray guessed = map_under(map, features, on_grid(*answer.best, map.zone));
+    const CellArray guessed = map_under(map, at(*answer.best), on_grid(*answer.best, map.zone));
     panels.push_back({"both, best guess", agreement(guessed, features.cells)});
   }
   return side_by_side(panels, kPanelPx);

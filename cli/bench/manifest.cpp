@@ -42,13 +42,16 @@ ManifestSource parse_source(const JsonField& field, const std::filesystem::path&
 }
 
 ManifestMap parse_map(const JsonField& field, const std::filesystem::path& directory) {
-  field.allow_only({"name", "sources"});
+  field.allow_only({"name", "sources", "terrain"});
   ManifestMap map;
   map.name = field.at("name").text();
   for (const JsonField& source : field.at("sources").elements()) {
     map.sources.push_back(parse_source(source, directory));
   }
   if (map.sources.empty()) field.refuse("has no sources");
+  if (!field.has("terrain")) return map;
+  for (const JsonField& model : field.at("terrain").elements()) map.terrain.push_back(directory / model.text());
+  if (map.terrain.empty()) field.at("terrain").refuse("names no elevation model");
   return map;
 }
 

@@ -28,6 +28,7 @@ struct ManifestSource {
 struct ManifestMap {
   std::string name;
   std::vector<ManifestSource> sources;
+  std::vector<std::filesystem::path> terrain{};  ///< elevation models of its ground; empty = it knows no heights
 };
 
 /// Shares of the imagery's rows and columns, measured from its edges, that no footprint may touch.

@@ -1,6 +1,7 @@
 #include "cli/bench/map_builder.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
@@ -14,7 +15,11 @@
 #include "core/units/fnv.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
+#include "tiles/sources/elevation_models.hpp"
+#include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
+#include "tiles/store/map_reader.hpp"
+#include "tiles/store/map_writer.hpp"
 #include "tiles/view/map_file_view.hpp"
 #include "tiles/world/road_truth.hpp"
 #include "tiles/world/street_network.hpp"
@@ -74,6 +79,25 @@ std::filesystem::path file_of(const ManifestMap& map, const MapSettings& setting
   return building.cache / fmt::format("{}-{}.gpkg", name, fnv1a64(identity));
 }
 
+/// As the manifest says now: a map that was built with other heights, or without, needs not be built anew.
+void put_terrain(const ManifestMap& map, const std::filesystem::path& file, MapWriter& writer,
+                 const MapBuilding& building) {
+  std::vector<std::string> models;
+  for (const std::filesystem::path& model : map.terrain) models.push_back(model.string());
+  const std::string wanted =
+      models.empty() ? "" : fmt::format("{} {}", fmt::join(models, ", "), fingerprint(models, building.version));
+  const auto there = info_of(file).value().terrain;
+  if (wanted == (there ? there->record.location : "")) return;
+  if (models.empty()) {
+    writer.remove_terrain();
+    return;
+  }
+  const ElevationReading reading = read_elevation_models(
+      models, writer.settings().zone, terrain_geometry(writer.extent(), kMostTerrainCells),
+      [&](std::int64_t done, std::int64_t total) { building.progress("terrain", done, total); }, building.stop);
+  writer.put_terrain(reading.terrain, {wanted, {}});
+}
+
 }  // namespace
 
 MapView build_map(const ManifestMap& map, const MapBuilding& building) {
@@ -95,6 +119,7 @@ MapView build_map(const ManifestMap& map, const MapBuilding& building) {
       ingest(*source.cells, source.record, writer,
              {.jobs = building.jobs, .seed = building.seed, .on_blocks = tell, .stop = building.stop});
     }
+    put_terrain(map, file, writer, building);
   }
   constexpr std::size_t kSearchCacheBytes = std::size_t{256} << 20;  // all queries search the same map
   return view_of(std::make_shared<const MapReader>(file), map.name, kSearchCacheBytes);

@@ -27,7 +27,8 @@ struct MapBuilding {
 };
 
 /// The file's name tells sources, their content, the detector and its settings, cell size, seed and version of the
-/// program apart. Throws what sources, pipeline and store throw.
+/// program apart; heights of the ground are put into it as the manifest has them. Throws what sources, pipeline and
+/// store throw.
 MapView build_map(const ManifestMap& map, const MapBuilding& building);
 
 /// The rasters of the map's imagery sources.

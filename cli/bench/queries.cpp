@@ -6,13 +6,18 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <variant>
 
 #include "cli/bench/quality.hpp"
 #include "cli/bench/query_poses.hpp"
 #include "cli/bench/told_prior.hpp"
 #include "cli/evaluation/frame_files.hpp"
 #include "cli/evaluation/random.hpp"
+#include "core/detect/frame_camera.hpp"
 #include "core/detect/frame_image.hpp"
+#include "core/locate/altitude.hpp"
+#include "core/locate/prior.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
@@ -130,16 +135,29 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
-/// nullptr where the frame cannot be read; why is added to `left_out`.
-SharedView seen_in(const FrameTruth& frame, const QuerySet& set, const RoadDetector& detector,
-                   std::vector<std::string>& left_out) {
+/// As `fix --alt` with the query's prior; nullopt where the frame tells its height above ground.
+std::optional<Altitude> altitude_of(const FrameTruth& frame, const Query& query, const MapView& map) {
+  if (!frame.alt_m) return std::nullopt;
+  return said_of(frame.file.string(), [&] {
+    return Altitude{*frame.alt_m, required_agl(map, region_of(map, query.prior).box, *frame.alt_m).middle_m()};
+  });
+}
+
+SharedView seen_in(FrameTruth frame, const std::optional<Altitude>& altitude, const QuerySet& set,
+                   const RoadDetector& detector) {
+  if (altitude) std::get<FrameCamera>(frame.view).agl_m = altitude->agl_m;
+  return std::make_shared<GroundView>(view_of(read_frame(set.path.parent_path(), frame, set.border), frame, detector));
+}
+
+/// Leaves the query without a view where the frame cannot be asked about; why is added to `left_out`.
+void look_at(const FrameTruth& frame, Query& query, const QuerySet& set, const MapView& map,
+             const RoadDetector& detector, std::vector<std::string>& left_out) {
   try {
-    return std::make_shared<GroundView>(
-        view_of(read_frame(set.path.parent_path(), frame, set.border), frame, detector));
+    query.altitude = altitude_of(frame, query, map);
+    query.view = seen_in(frame, query.altitude, set, detector);
   } catch (const Error& error) {
     if (!is_about_input(error)) throw;
     left_out.push_back(fmt::format("{}: {} [{}]", describe(set), error.what(), error.code()));
-    return nullptr;
   }
 }
 
@@ -180,23 +198,43 @@ void require_places_near(const MapView& map, const std::vector<FrameTruth>& fram
                                                           set.path.string(), described(*far), map.id.name, kAdvice));
 }
 
+/// By which a frame that tells its height above the sea gets its size. That of frames together would be another one for
+/// each.
+void require_heights(const MapView& map, const std::vector<FrameTruth>& frames, const QuerySet& set) {
+  const auto told = std::ranges::find_if(frames, [](const FrameTruth& frame) { return frame.alt_m.has_value(); });
+  if (told == frames.end()) return;
+  if (!map.terrain) {
+    throw InvalidInput("terrain-missing",
+                       fmt::format("{}: {} has alt_m, and the map '{}' does not know how high its ground is: give "
+                                   "agl_m, or name elevation models in the \"terrain\" of the map",
+                                   set.path.string(), told->file.string(), map.id.name));
+  }
+  if (set.together > 1) {
+    throw InvalidInput("frames-without-size",
+                       fmt::format("{}: {} has alt_m, and frames are combined in the size that they have: give agl_m, "
+                                   "or leave out \"together\"",
+                                   set.path.string(), told->file.string()));
+  }
+}
+
 DrawnQueries real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
                          const QueryDrawing& drawing) {
-  const auto frames = evaluation::read_frames_csv(set.path);
+  const auto frames = evaluation::read_frames_csv(set.path, evaluation::Heights::kAboveSeaToo);
   require_places_near(map, frames, set);
+  require_heights(map, frames, set);
   DrawnQueries drawn;
   std::vector<SharedView> views;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
-    views.push_back(seen_in(frame, set, detector, drawn.left_out));
-    if (!views.back()) continue;
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
     Query query;
     query.id = frame.file.string();
     if (!set.elsewhere) query.truth = frame.pose;
-    query.view = views.back();
     tell_prior(query, set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                frame.pose.heading, set, map, random);
+    look_at(frame, query, set, map, detector, drawn.left_out);
+    views.push_back(query.view);
+    if (!query.view) continue;
     query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
     query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, views);

@@ -24,7 +24,8 @@ struct DrawnQueries {
 /// `map` is searched; simulated queries are cut out of `from`; of camera frames what `detector` makes use of is kept.
 /// Where one query of a set finds no place, all of the set are left out; frames that cannot be read, one by one.
 /// Throws InvalidInput "frames-csv" naming line and column, "frames-outside-map" where no frame lies on the map,
-/// "position-outside-zone" naming one that is far away, "prior-outside-map", and what reading the imagery throws.
+/// "position-outside-zone" naming one that is far away, "prior-outside-map", of frames that tell their height above the
+/// sea "terrain-missing" and "frames-without-size", and what reading the imagery throws.
 DrawnQueries make_queries(const QuerySet& set, const MapView& map, const MapView& from, const RoadDetector& detector,
                           const QueryDrawing& drawing);
 

@@ -11,7 +11,9 @@
 #include "core/detect/frame.hpp"
 #include "core/detect/orthoimage.hpp"
 #include "core/grid/combine.hpp"
+#include "core/locate/altitude.hpp"
 #include "core/locate/fix.hpp"
+#include "core/locate/map_view.hpp"
 
 namespace roadfix::bench {
 
@@ -28,12 +30,17 @@ struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
   SharedView view;                     ///< what the frame shows; nullptr where there is none
   std::optional<FeatureMap> features;  ///< instead of a view where the query is simulated
+  std::optional<Altitude> altitude;    ///< by which `view` got its size, of a frame that tells its height above the sea
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
   double scale_range = 0.0;           ///< SearchOptions::scale_range
   std::vector<EarlierFrame> earlier;  ///< to be laid together with `view`
   std::string unasked;                ///< code of why it is not asked but counts as not found; empty = it is
 };
+
+/// What the query shows, in the size that it has if the vehicle is there; unchanged where the query tells no altitude,
+/// or the map does not know the ground of the place.
+FeatureMap seen_above(const GeoPose& place, const Query& query, FeatureMap features, const MapView& map);
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's
 /// figure 1.

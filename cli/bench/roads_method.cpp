@@ -5,12 +5,14 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "cli/bench/agreement_picture.hpp"
 #include "cli/limits.hpp"
 #include "core/detect/frame.hpp"
 #include "core/grid/combine.hpp"
+#include "core/locate/altitude.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
@@ -75,7 +77,7 @@ class RoadsMethod : public Method {
     options.search.scale_range = query.scale_range;
     if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
     options.left_out = seen->left_out;
-    const Fix fix = locate(map_, seen->features, query.prior, options);
+    const Fix fix = locate_from(query.altitude, map_, seen->features, query.prior, options);
     answer.status = fix.status;
     answer.reason = fix.reason;
     answer.probability = fix.probability;
@@ -86,7 +88,10 @@ class RoadsMethod : public Method {
     }
     answer.left_out = seen->left_out;
     answer.time_ms = parts.detection_ms + ms_since(start);
-    if (query.truth) answer.rho_at_truth = match(map_, seen->features, std::span(&*query.truth, 1)).front().rho;
+    if (query.truth) {
+      const FeatureMap there = seen_above(*query.truth, query, seen->features, map_);
+      answer.rho_at_truth = match(map_, there, std::span(&*query.truth, 1)).front().rho;
+    }
     return answer;
   }
 

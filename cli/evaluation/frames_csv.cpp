@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "core/units/error.hpp"
@@ -73,11 +74,11 @@ class Row {
 
 FrameCamera camera_of(const Row& row) {
   FrameCamera camera;
-  camera.agl_m = row.number("agl_m", 0.0, kAnyNumber);
+  camera.agl_m = row.optional_number("agl_m", 0.0, kAnyNumber).value_or(0.0);
   camera.horizontal_fov = row.optional_angle("fov_deg");
   camera.focal_px = row.optional_number("focal_px", -kAnyNumber, kAnyNumber);
   if (camera.horizontal_fov.has_value() == camera.focal_px.has_value()) {
-    row.refuse("agl_m needs either fov_deg or focal_px");
+    row.refuse("agl_m and alt_m need either fov_deg or focal_px");
   }
   camera.roll = row.optional_angle("roll_deg");
   camera.pitch = row.optional_angle("pitch_deg");
@@ -97,18 +98,25 @@ FrameCamera camera_of(const Row& row) {
   return camera;
 }
 
-FrameTruth frame_of(const Row& row) {
+FrameTruth frame_of(const Row& row, Heights heights) {
   if (!row.has("file")) row.refuse("the column 'file' is empty");
   FrameTruth frame;
   frame.file = std::string(row.text("file"));
   frame.pose = {{row.number("lat", -90.0, 90.0), row.number("lon", -180.0, 180.0)}, row.angle("heading_deg")};
-  if (row.has("gsd_m") == row.has("agl_m")) {
-    row.refuse("give gsd_m for a frame seen straight from above, or agl_m with fov_deg or focal_px for any other");
+  constexpr std::array kSizes{"gsd_m", "agl_m", "alt_m"};
+  if (std::ranges::count_if(kSizes, [&](const char* name) { return row.has(name); }) != 1) {
+    row.refuse(
+        "give gsd_m for a frame seen straight from above, or for any other either agl_m or alt_m, with fov_deg or "
+        "focal_px");
   }
-  if (row.has("agl_m")) {
-    frame.view = camera_of(row);
-  } else {
+  frame.alt_m = row.optional_number("alt_m", -kAnyNumber, kAnyNumber);
+  if (frame.alt_m && heights == Heights::kAboveGround) {
+    row.refuse("alt_m, the height above the sea, is for roadfix bench alone: give agl_m, that above ground");
+  }
+  if (row.has("gsd_m")) {
     frame.view = StraightDown{row.number("gsd_m", 1e-3, 1e3)};
+  } else {
+    frame.view = camera_of(row);
   }
   frame.sequence = std::string(row.text("sequence"));
   frame.time_s = row.optional_number("time_s", -kAnyNumber, kAnyNumber);
@@ -127,13 +135,15 @@ std::vector<std::string_view> names_in(std::string_view header) {
     refuse(1, fmt::format("the column '{}' is missing{}", name,
                           header.find(';') == std::string_view::npos ? "" : "; columns are separated by commas"));
   }
-  if (!has("gsd_m") && !has("agl_m")) refuse(1, "there is neither a column 'gsd_m' nor 'agl_m'");
+  if (!has("gsd_m") && !has("agl_m") && !has("alt_m")) {
+    refuse(1, "there is neither a column 'gsd_m' nor 'agl_m' nor 'alt_m'");
+  }
   return names;
 }
 
 }  // namespace
 
-std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
+std::vector<FrameTruth> parse_frames_csv(std::string_view text, Heights heights) {
   std::vector<FrameTruth> frames;
   std::optional<std::vector<std::string_view>> names;
   int line = 0;
@@ -145,7 +155,7 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
     if (!names) {
       names = names_in(row);
     } else {
-      frames.push_back(frame_of(Row(*names, row, line)));
+      frames.push_back(frame_of(Row(*names, row, line), heights));
     }
   }
   if (frames.empty()) refuse(line, "there are no frames");

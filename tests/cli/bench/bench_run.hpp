@@ -75,11 +75,32 @@ class BenchRun : public ::testing::Test {
     options.progress = [](const std::string&, std::int64_t, std::int64_t) {};
   }
 
-  std::vector<SetResult> run(const std::string& queries, const std::string& methods) const {
-    const std::string text = R"({"maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}]}],
-        "queries": [)" + queries +
-                             R"(], "methods": [)" + methods + "]}";
+  /// `terrain`: the map's elevation models.
+  std::vector<SetResult> run(const std::string& queries, const std::string& methods,
+                             const std::string& terrain = "") const {
+    const std::string text = R"({"maps": [{"name": "town", "sources": [{"path": "town.png", "as": "imagery"}])" +
+                             (terrain.empty() ? "" : R"(, "terrain": [)" + terrain + "]") + R"(}], "queries": [)" +
+                             queries + R"(], "methods": [)" + methods + "]}";
     return bench::run(parse_manifest(text, folder.path()), options);
+  }
+
+  /// The ground of the town rises to the east, from 100 to 200 m above the sea.
+  static double height_m(GridPoint point) { return 100.0 + (point.east_m - 400'000.0) / 7.0; }
+  void write_elevation_model(const std::string& name, double raised_m = 0.0) const {
+    constexpr int kSide = 200;
+    constexpr double kCellM = 30.0;
+    const GridPoint corner{397'000.0, 3'997'000.0};
+    std::ofstream model(folder / name);
+    model << "ncols " << kSide << "\nnrows " << kSide << "\nxllcorner " << corner.east_m << "\nyllcorner "
+          << corner.north_m << "\ncellsize " << kCellM << '\n';
+    for (int row = 0; row < kSide; ++row) {
+      for (int col = 0; col < kSide; ++col) {
+        model << height_m({corner.east_m + (col + 0.5) * kCellM, corner.north_m}) + raised_m << ' ';
+      }
+      model << '\n';
+    }
+    std::ofstream((folder / name).replace_extension(".prj"))
+        << "Projection UTM\nZone 34\nDatum WGS84\nSpheroid WGS84\nUnits METERS\nZunits METERS\n";
   }
 
   testing::TemporaryFolder folder;

@@ -67,6 +67,18 @@ std::string with(const std::string& from, const std::string& to) {
   return text;
 }
 
+TEST(Manifest, NamesTheElevationModelsOfAMap) {
+  const auto terrain = [](const std::string& models) {
+    return parse_manifest(with(R"("as": "imagery"}])", R"("as": "imagery"}], "terrain": )" + models), "/data")
+        .maps[0]
+        .terrain;
+  };
+  EXPECT_THAT(terrain(R"(["n37.tif", "n38.tif"])"), ElementsAre("/data/n37.tif", "/data/n38.tif"));
+  EXPECT_TRUE(parse_manifest(kManifest, "/data").maps[0].terrain.empty());
+  EXPECT_THAT([&] { terrain("[]"); },
+              ThrowsMessage<InvalidInput>(HasSubstr("maps[0].terrain names no elevation model")));
+}
+
 TEST(Manifest, ReadsThatAPriorIsWrong) {
   const Manifest manifest = parse_manifest(with(R"({"radius_m": 500})", R"({"radius_m": 500, "beyond_m": 30})"), ".");
   EXPECT_EQ(manifest.queries[2].prior_beyond_m, 30);

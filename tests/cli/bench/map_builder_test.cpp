@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 
 #include "tests/cli/bench/bench_run.hpp"
+#include "tests/support/code_of.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -46,6 +48,37 @@ TEST_F(MapBuilder, TakesNeitherMapsNorTownsOfAnotherVersionOfTheProgram) {
   ASSERT_EQ(towns().size(), 1U);
   std::ofstream(towns().front()) << R"({"type": "FeatureCollection", "features": []})";
   EXPECT_EQ(build_map(map, building).id.version, version);
+}
+
+TEST_F(MapBuilder, GivesAMapTheHeightsOfItsGroundAsTheManifestHasThemNow) {
+  write_elevation_model("dem.asc");
+  const ManifestMap level{"town", {{folder / "town.png", As::kImagery}}};
+  ManifestMap hills = level;
+  hills.terrain = {folder / "dem.asc"};
+  const GridPoint place{400'500.0, 3'999'500.0};
+  const auto height_there = [&](const ManifestMap& map) -> std::optional<double> {
+    const MapView view = build_map(map, options.maps);
+    return view.terrain ? view.terrain->height_m(place) : std::nullopt;
+  };
+  EXPECT_FALSE(height_there(level));
+  EXPECT_NEAR(height_there(hills).value(), height_m(place), 0.5);
+  write_elevation_model("dem.asc", 50.0);
+  EXPECT_NEAR(height_there(hills).value(), height_m(place) + 50.0, 0.5);
+  EXPECT_FALSE(height_there(level));
+  hills.terrain = {folder / "lost.asc"};
+  EXPECT_EQ(testing::code_of([&] { build_map(hills, options.maps); }), "file-not-found");
+}
+
+TEST_F(MapBuilder, DoesNotReadHeightsAgainThatAMapHas) {
+  write_elevation_model("dem.asc");
+  const ManifestMap hills{"town", {{folder / "town.png", As::kImagery}}, {folder / "dem.asc"}};
+  bool reads = false;
+  options.maps.progress = [&](const std::string& what, std::int64_t, std::int64_t) { reads |= what == "terrain"; };
+  build_map(hills, options.maps);
+  EXPECT_TRUE(reads);
+  reads = false;
+  build_map(hills, options.maps);
+  EXPECT_FALSE(reads);
 }
 
 TEST_F(MapBuilder, MapsBothSidesOfTheEquator) {

@@ -94,22 +94,35 @@ cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera&
   return frame;
 }
 
-TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
-  const UtmZone zone = UtmZone::from_epsg(32634).value();
+/// One frame of a tilted camera with a distorting lens, 250 m above a place where the town lies to all sides.
+class BenchRunOfACamera : public BenchRun {
+ protected:
+  BenchRunOfACamera() {
+    FrameCamera camera;
+    camera.focal_px = 400.0;
+    camera.agl_m = 250.0;
+    camera.roll = Angle::degrees(-5);
+    camera.pitch = Angle::degrees(8);
+    camera.distortion = {-0.2, 0.05, 0.0, 0.0};
+    cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}));
+  }
+
+  /// `height`: the name of its column.
+  void describe_frame(const std::string& height, double height_m) const {
+    const UtmZone zone = UtmZone::from_epsg(32634).value();
+    const LatLon at = zone.unproject(truth.position);
+    std::ofstream(folder / "oblique.csv")
+        << std::setprecision(10) << "file,lat,lon,heading_deg," << height << ",focal_px,roll_deg,pitch_deg,distortion\n"
+        << "oblique.png," << at.lat_deg << ',' << at.lon_deg << ','
+        << zone.true_from_grid(truth.heading, truth.position).degrees() << ',' << height_m
+        << ",400,-5,8,-0.2 0.05 0 0\n";
+  }
+
   const GridPose truth{{400330.0, 3999620.0}, Angle::degrees(40)};
-  FrameCamera camera;
-  camera.focal_px = 400.0;
-  camera.agl_m = 250.0;
-  camera.roll = Angle::degrees(-5);
-  camera.pitch = Angle::degrees(8);
-  camera.distortion = {-0.2, 0.05, 0.0, 0.0};
-  cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}));
-  const LatLon at = zone.unproject(truth.position);
-  std::ofstream(folder / "oblique.csv") << std::setprecision(10)
-                                        << "file,lat,lon,heading_deg,agl_m,focal_px,roll_deg,pitch_deg,distortion\n"
-                                        << "oblique.png," << at.lat_deg << ',' << at.lon_deg << ','
-                                        << zone.true_from_grid(truth.heading, truth.position).degrees()
-                                        << ",250,400,-5,8,-0.2 0.05 0 0\n";
+};
+
+TEST_F(BenchRunOfACamera, PlacesTheUav) {
+  describe_frame("agl_m", 250.0);
   for (const SetResult& result : run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads", "sift")")) {
     const Outcome& outcome = result.outcomes.at(0);
     EXPECT_LT(outcome.error_m.value(), 3.0) << to_string(result.method);
@@ -118,6 +131,41 @@ TEST_F(BenchRunOfFrames, PlacesTheUavOfFramesThatTheirCameraDescribes) {
     EXPECT_GE(outcome.answer.mode.value().ellipse.sigma_m[1], 250.0 * kToldAttitudeSigma.radians())
         << "how well the attitude is known is part of the accuracy";
   }
+}
+
+TEST_F(BenchRunOfACamera, PlacesTheUavByItsHeightAboveTheSeaWhereTheMapKnowsThatOfItsGround) {
+  constexpr const char* kQueries = R"({"map": "town", "frames": "oblique.csv"})";
+  describe_frame("agl_m", 250.0);
+  const double rho = run(kQueries, R"("roads")").at(0).outcomes.at(0).answer.rho_at_truth.value();
+  write_elevation_model("dem.asc");
+  describe_frame("alt_m", height_m(truth.position) + 250.0);
+  for (const char* prior : {R"("map")", R"({"radius_m": 200})"}) {
+    const auto results = run(std::string(R"({"map": "town", "frames": "oblique.csv", "prior": )") + prior + "}",
+                             R"("roads")", R"("dem.asc")");
+    const Outcome& outcome = results.at(0).outcomes.at(0);
+    EXPECT_LT(outcome.error_m.value(), 5.0) << prior;
+    EXPECT_NEAR(outcome.answer.mode.value().agl_m.value(), 250.0, 3.0) << prior;
+    EXPECT_NEAR(outcome.answer.rho_at_truth.value(), rho, 0.03) << prior;
+  }
+}
+
+TEST_F(BenchRunOfACamera, LeavesOutFramesWhoseHeightAboveTheSeaTellsNothing) {
+  std::vector<std::string> left_out;
+  options.left_out = [&](const std::string& why) { left_out.push_back(why); };
+  const auto why_left_out = [&](double alt_m, const std::string& more, const std::string& terrain) {
+    describe_frame("alt_m", alt_m);
+    left_out.clear();
+    EXPECT_TRUE(run(R"({"map": "town", "frames": "oblique.csv")" + more + "}", R"("roads")", terrain).empty());
+    return left_out;
+  };
+  write_elevation_model("dem.asc");
+  EXPECT_THAT(why_left_out(397.0, "", ""),
+              ElementsAre(AllOf(HasSubstr("oblique.png has alt_m, and the map 'town' does not know how high"),
+                                HasSubstr("[terrain-missing]"))));
+  EXPECT_THAT(why_left_out(397.0, R"(, "together": 2)", R"("dem.asc")"),
+              ElementsAre(HasSubstr("[frames-without-size]")));
+  EXPECT_THAT(why_left_out(20.0, "", R"("dem.asc")"),
+              ElementsAre(AllOf(HasSubstr("oblique.png: at 20 m above the sea"), HasSubstr("[below-ground]"))));
 }
 
 TEST_F(BenchRunOfFrames, CountsAFrameBeyondTheMapAsNotFoundWhateverIsToldOfItsPlace) {

@@ -81,9 +81,21 @@ TEST(FramesCsv, DescribesTheCameraOfAFrame) {
   EXPECT_FALSE(calibrated.roll || calibrated.pitch);
 }
 
+TEST(FramesCsv, TellsTheHeightAboveTheSeaOfACameraToThoseWhoCanUseIt) {
+  const char* text = "file,lat,lon,heading_deg,agl_m,alt_m,fov_deg\na,1,1,0,,-12.5,84\nb,1,1,0,300,,84\n";
+  const auto frames = parse_frames_csv(text, Heights::kAboveSeaToo);
+  EXPECT_EQ(frames.at(0).alt_m, -12.5);
+  EXPECT_EQ(std::get<FrameCamera>(frames[0].view).horizontal_fov, Angle::degrees(84));
+  EXPECT_FALSE(frames.at(1).alt_m);
+  EXPECT_EQ(std::get<FrameCamera>(frames[1].view).agl_m, 300.0);
+  EXPECT_THAT([&] { parse_frames_csv(text); },
+              ThrowsMessage<InvalidInput>(HasSubstr("line 2: alt_m, the height above the sea, is for roadfix bench")));
+}
+
 TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   const auto complaint = [](const char* text, const char* part) {
-    EXPECT_THAT([&] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(part))) << text;
+    EXPECT_THAT([&] { parse_frames_csv(text, Heights::kAboveSeaToo); }, ThrowsMessage<InvalidInput>(HasSubstr(part)))
+        << text;
   };
   complaint("file,lat,lon,gsd_m\n", "heading_deg");
   complaint("file,lat,lon,heading_deg,gsd_m\n", "no frames");
@@ -94,7 +106,8 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   complaint("file,lat,lon,heading_deg,gsd_m,time_s\na,1,1,0,1,12:30\n", "time_s is '12:30'");
   complaint("file,lat,lon,heading_deg\na,1,1,0\n", "neither");
   const auto of_the_camera = [&](const std::string& row, const char* part) {
-    const std::string header = "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,principal_px,lens,distortion\n";
+    const std::string header =
+        "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,principal_px,lens,distortion,alt_m\n";
     complaint((header + "a,1,1,0," + row + "\n").c_str(), part);
   };
   of_the_camera(",,84", "give gsd_m");
@@ -102,6 +115,9 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   of_the_camera(",120", "either fov_deg or focal_px");
   of_the_camera(",120,84,1000", "either fov_deg or focal_px");
   of_the_camera(",120m,84", "agl_m is '120m'");
+  of_the_camera("0.5,,,,,,,500", "give gsd_m");
+  of_the_camera(",120,84,,,,,500", "either agl_m or alt_m");
+  of_the_camera(",,,,,,,500", "alt_m need either fov_deg or focal_px");
   of_the_camera(",120,,1000,800", "principal_px must be two numbers");
   of_the_camera(",120,,1000,,pinhole", "lens is 'pinhole'");
   of_the_camera(",120,,1000,,,0.1 x", "distortion is 'x'");

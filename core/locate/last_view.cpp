@@ -23,6 +23,10 @@ constexpr double kCoarser = 2.0;
 constexpr int kMaxAcrossCompared = 128;
 static_assert(kMaxAcrossCompared <= RecentFrames::kMaxAcross, "LastView::earlier keeps no larger one");
 
+// Pictures are compared once the vehicle has moved by so much of the ground that they show. So far apart none of 170
+// over Adiyaman, Hatay, Kahramanmaras and Massachusetts agreed in more than 0.25 of their parts, or 0.88 where the
+// vehicle leans back by just what it has moved. Those of a stopped camera, encoded anew, agree in 0.95.
+constexpr double kApartShare = 3.0 / PictureSketch::kAcross;
 constexpr double kApartCells = 3.0;  // views are compared once roads must have moved by this
 constexpr double kMinShareInCommon = 0.25;
 // Laid in place over an earlier view, none of 537 views of 16 flights over Montevideo and Adiyaman correlated by more
@@ -68,11 +72,15 @@ std::optional<double> correlation_of(const FeatureMap& features, const PlacedFea
   return pearson(sums);
 }
 
-/// How far roads halfway to the rim have moved in the picture, in cells.
+/// How far what lies halfway to the rim of a picture moves in it, as a share of its side.
+double share_apart(const BodyOffset& offset, double side_m) {
+  return distance_m(offset) / side_m + 0.25 * std::abs(offset.turn.radians());
+}
+
+/// The same of roads, in cells.
 double cells_apart(const PlacedFeatures& earlier) {
-  const FeatureMap& features = earlier.features;
-  const double arm = 0.25 * std::min(features.cells.cols(), features.cells.rows());
-  return distance_m(earlier.offset) / features.cell_m + arm * std::abs(earlier.offset.turn.radians());
+  const int across = std::min(earlier.features.cells.cols(), earlier.features.cells.rows());
+  return across * share_apart(earlier.offset, across * earlier.features.cell_m);
 }
 
 }  // namespace
@@ -89,6 +97,11 @@ void LastView::move(const std::optional<Odometry>& odometry, bool is_complete) {
     view.turned_rad += odometry ? std::abs(odometry->turn.radians()) : 0.0;
   }
   if (stands_still) return;
+  if (!odometry) {
+    earlier_picture.reset();  // it may hover
+  } else if (earlier_picture) {
+    earlier_picture->moved = offset_from({}, moved(moved({}, earlier_picture->moved), *odometry));
+  }
   if (odometry && is_complete) {
     earlier.move(*odometry, {});
   } else {
@@ -105,8 +118,12 @@ bool LastView::was_seen_before_it_moved(std::uint64_t digest) {
   return false;
 }
 
-View LastView::take_in(const FeatureMap& features, std::optional<std::uint64_t> picture) {
-  if (picture && was_seen_before_it_moved(*picture)) return View::kRepeated;
+View LastView::take_in(const FeatureMap& features, const std::optional<SentPicture>& picture) {
+  if (picture && was_seen_before_it_moved(picture->digest)) return View::kRepeated;
+  if (picture && is_earlier_picture(picture->sketch, features.side_m())) {
+    stands_still = true;
+    return View::kStandsStill;
+  }
   if (!shows_road(features)) {
     earlier.clear();
     stands_still = false;
@@ -115,6 +132,15 @@ View LastView::take_in(const FeatureMap& features, std::optional<std::uint64_t> 
   if (was_seen_before_it_moved(digest_of(features))) return View::kRepeated;
   stands_still = lies_as_earlier(coarser(features));
   return stands_still ? View::kStandsStill : View::kNew;
+}
+
+/// Keeps the picture to be compared with later ones, unless it is the same. `side_m`: of the ground that it shows.
+bool LastView::is_earlier_picture(const PictureSketch& sketch, double side_m) {
+  if (earlier_picture && is_same_picture(earlier_picture->sketch, sketch)) {
+    return stands_still || share_apart(earlier_picture->moved, side_m) >= kApartShare;
+  }
+  earlier_picture = {sketch, {}};
+  return false;
 }
 
 /// Keeps `features` to be compared with later views, unless they stand still or have hardly moved.

@@ -28,9 +28,8 @@ struct StepInput {
   std::optional<Odometry> odometry;              ///< since the step before; turns within [-180, 180] degrees
   std::optional<OdometryCovariance> covariance;  ///< nullopt = it follows from VehicleNoise
   std::optional<FeatureMap> features;            ///< nullopt = nothing was seen
-  /// Equal for the same picture, whatever height and attitude it is measured by: tells a camera or a link that has
-  /// stopped. nullopt = the features were found elsewhere.
-  std::optional<std::uint64_t> picture = {};
+  /// That the features were found in: tells a camera or a link that has stopped. nullopt = they were found elsewhere.
+  std::optional<SentPicture> picture = {};
   /// From where, if they show the ground in its relief; if the height above the sea is told, their size follows from
   /// that and the ground below the vehicle, and the map has heights.
   std::optional<Altitude> altitude = {};

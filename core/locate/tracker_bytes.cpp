@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3530'5354'4652ULL;  // "RFTS05"
+constexpr std::uint64_t kMagic = 0x3630'5354'4652ULL;  // "RFTS06"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -36,7 +36,7 @@ void pass_members(auto& io, auto& state) {
   io(searched, last->sequence, last->time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
   io(motion.velocity, motion.turn_rate_rad_s, motion.odometry_is_wrong, motion.coasts, motion.coasted_s, reach);
-  io(last_view.seen, last_view.stands_still, last_view.earlier);
+  io(last_view.seen, last_view.stands_still, last_view.earlier, last_view.earlier_picture);
   io(filter.seed, filter.step, filter.resets, filter.slow_fit, filter.fast_fit, filter.particles);
   io(recent);
 }
@@ -54,6 +54,10 @@ void pass_frame(auto& io, auto& frame) {
 }
 
 void pass_view(auto& io, auto& view) { io(view.digest, view.moved_m, view.turned_rad); }
+
+void pass_picture(auto& io, auto& picture) {
+  io(picture.sketch, picture.moved.forward_m, picture.moved.right_m, picture.moved.turn);
+}
 
 auto columns_of(auto& p) {
   return std::array{&p.east_m,          &p.north_m, &p.heading_rad, &p.drift_east_m_s,
@@ -74,6 +78,8 @@ class Writer {
   void put(Angle angle) { put(angle.radians()); }
   void put(const Reach& reach) { pass_reach(*this, reach); }
   void put(const BodyVelocity& velocity) { (*this)(velocity.forward_m_s, velocity.right_m_s); }
+  void put(const PictureSketch& sketch) { put(std::as_bytes(std::span(sketch.parts))); }
+  void put(const EarlierPicture& picture) { pass_picture(*this, picture); }
   template <typename Value>
   void put(const std::optional<Value>& value) {
     put(value.has_value());
@@ -130,6 +136,12 @@ class Reader {
   void take(Angle& angle) { angle = Angle::radians(taken<double>()); }
   void take(Reach& reach) { pass_reach(*this, reach); }
   void take(BodyVelocity& velocity) { (*this)(velocity.forward_m_s, velocity.right_m_s); }
+  void take(PictureSketch& sketch) {
+    const auto parts = std::as_writable_bytes(std::span(sketch.parts));
+    std::ranges::copy(bytes(parts.size()), parts.begin());
+    if (std::ranges::any_of(sketch.parts, [](int part) { return std::abs(part) > 1; })) refuse("has no such sketch");
+  }
+  void take(EarlierPicture& picture) { pass_picture(*this, picture); }
   template <typename Value>
   void take(std::optional<Value>& value) {
     if (taken<bool>()) value = taken<Value>();

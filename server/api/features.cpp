@@ -3,14 +3,16 @@
 #include <utility>
 #include <variant>
 
+#include "core/detect/sketch.hpp"
 #include "core/locate/told_frames.hpp"
 
 namespace roadfix::api {
 
 SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels) {
   const FrameScale& scale = frame.scale;
-  SeenFrame seen{ground_seen(frame_image(std::move(frame.pixels), frame.border), scale.view, detector,
-                             static_cast<double>(max_pixels))};
+  FramePixels image = frame_image(std::move(frame.pixels), frame.border);
+  const PictureSketch sketch = sketch_of(image.pixels);
+  SeenFrame seen{ground_seen(std::move(image), scale.view, detector, static_cast<double>(max_pixels)), sketch};
   if (scale.in_file) seen.camera_in_file = std::get<FrameCamera>(scale.view);
   return seen;
 }
@@ -18,8 +20,8 @@ SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max
 Features detected(const SeenFrame& frame, const Detection& detection) {
   const auto start = std::chrono::steady_clock::now();
   FeatureMap map = detect_features(detection.detector, frame.view, detection.cell_m, detection.seed, detection.stop);
-  return {std::move(map), std::chrono::steady_clock::now() - start, frame.camera_in_file,
-          detection.detector.describe()};
+  return {std::move(map), std::chrono::steady_clock::now() - start, frame.camera_in_file, detection.detector.describe(),
+          frame.sketch};
 }
 
 Features together(Features first, std::vector<OtherFeatures> others, double max_cells) {

@@ -12,6 +12,7 @@
 
 #include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
+#include "core/grid/picture_sketch.hpp"
 #include "core/units/planar.hpp"
 
 namespace roadfix::api {
@@ -22,6 +23,7 @@ struct Features {
   std::optional<std::chrono::duration<double, std::milli>> detect_time{};
   std::optional<FrameCamera> camera_in_file{};  ///< of a frame whose file tells it
   std::optional<std::string> detector{};        ///< of frames: RoadDetector::describe()
+  std::optional<PictureSketch> sketch{};        ///< of a frame as it was sent
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
   std::vector<std::size_t> left_out{};          ///< FramesTogether::left_out, the first picture being 0
 };
@@ -41,6 +43,7 @@ struct Frame {
 
 struct SeenFrame {
   GroundView view;
+  PictureSketch sketch{};
   std::optional<FrameCamera> camera_in_file{};  ///< where it was read from there
 };
 

@@ -45,11 +45,11 @@ std::vector<std::string> step_query() {
 }
 
 /// Of a camera's picture as it was sent.
-std::optional<std::uint64_t> picture_of(const api::Content& content) {
-  if (!api::is_frame(content.fields)) return std::nullopt;
+std::optional<SentPicture> picture_of(const api::Content& content, const api::Features& features) {
+  if (!features.sketch) return std::nullopt;
   Fnv1a64 hash;
   hash.add(characters_of(content.image));
-  return hash.value();
+  return SentPicture{hash.value(), *features.sketch};
 }
 
 /// Of all that the step says, to tell a repeated step from another one. How it is packed says nothing: a form that is
@@ -143,11 +143,11 @@ http::Response take_step(const Service& service, const http::Request& request, P
   if (api::shows_ground(step.content)) {
     step.sent.input.altitude = api::take_altitude(
         step.content.fields, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
-    step.sent.input.picture = picture_of(step.content);
     const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features =
         api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits);
+    step.sent.input.picture = picture_of(step.content, features);
     step.sent.input.features = std::move(features.map);
     step.sent.detector = std::move(features.detector);
   }

@@ -3,12 +3,12 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <opencv2/imgcodecs.hpp>
+#include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 #include <string>
-#include <vector>
 
 #include "tests/e2e/served_town.hpp"
+#include "tests/support/encoded.hpp"
 #include "tests/support/eventually.hpp"
 
 namespace roadfix {
@@ -25,14 +25,15 @@ void lay_level_ground(const std::filesystem::path& map, const GridGeometry& town
   MapWriter(map, {zone, town.cell_m}).put_terrain(terrain, {.location = "dem.tif"});
 }
 
-std::string noise_png() {
+cv::Mat noise_frame() {
   cv::Mat frame(400, 400, CV_8UC3);
   cv::randu(frame, 0, 255);
   cv::GaussianBlur(frame, frame, {}, 4.0);
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", frame, png);
-  return testing::text_of(png);
+  cv::normalize(frame, frame, 0.0, 255.0, cv::NORM_MINMAX);
+  return frame;
 }
+
+std::string as_png(const cv::Mat& frame) { return testing::text_of(testing::encoded(".png", frame)); }
 
 class ServiceAltitude : public testing::ServedTown {
  protected:
@@ -54,7 +55,8 @@ class ServiceAltitude : public testing::ServedTown {
                      frame_, "image/png"));
   }
 
-  std::string frame_ = noise_png();
+  const cv::Mat pixels_ = noise_frame();
+  const std::string frame_ = as_png(pixels_);
 };
 
 TEST_F(ServiceAltitude, GivesAFrameTheHeightAboveTheGroundOfTheMap) {
@@ -86,6 +88,23 @@ TEST_F(ServiceAltitude, GivesTheStepsOfATrackTheirsAboveTheGroundBelow) {
   EXPECT_EQ(later["measurement"], "repeated") << "the same picture, whatever its height";
   EXPECT_FALSE(step("&sequence=3&time_us=3000000&agl_m=250&alt_m=950").contains("agl_m"));
   EXPECT_EQ(step("&sequence=4&time_us=4000000&alt_m=100")["code"], "below-ground");
+}
+
+TEST_F(ServiceAltitude, TellsAPictureThatComesAgainEncodedAnewAndFromAnotherHeightAndAttitude) {
+  const json asked{{"map", "high"}, {"lat", town->place.lat_deg}, {"lon", town->place.lon_deg}, {"radius_m", 100}};
+  const json track = testing::json_of(client_.Post("/v1/tracks", asked.dump(), "application/json"));
+  const auto step = [&](const cv::Mat& picture, const std::string& told) {
+    const std::string path = "/v1/tracks/" + track["id"].get<std::string>() + "/steps?kind=frame&fov_deg=60" + told;
+    return testing::json_of(client_.Post(path.c_str(), as_png(picture), "image/png"));
+  };
+  const std::string moved = "&forward_m=20&right_m=0&turn_deg=0";
+  step(pixels_, "&sequence=1&time_us=1&alt_m=1000&roll_deg=0&pitch_deg=0");
+  const cv::Mat lighter = 1.02 * pixels_ + cv::Scalar::all(3);
+  EXPECT_EQ(step(lighter, "&sequence=2&time_us=2000000&alt_m=990&roll_deg=3&pitch_deg=-2" + moved)["measurement"],
+            "repeated");
+  const cv::Mat other = noise_frame();
+  EXPECT_NE(step(other, "&sequence=3&time_us=3000000&alt_m=990&roll_deg=3&pitch_deg=-2" + moved)["measurement"],
+            "repeated");
 }
 
 }  // namespace

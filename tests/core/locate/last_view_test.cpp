@@ -7,12 +7,15 @@
 #include "core/grid/resample.hpp"
 #include "core/units/draws.hpp"
 #include "tests/core/locate/track_fixture.hpp"
+#include "tests/support/sketches.hpp"
 
 namespace roadfix {
 namespace {
 
 using testing::Flight;
+using testing::random_sketch;
 using testing::Track;
+using testing::with_parts_changed;
 
 FeatureMap street_at(int col) {
   CellArray cells(20, 20, kNoRoad);
@@ -38,6 +41,14 @@ FeatureMap noisy(FeatureMap features, int percent, std::mt19937_64& random) {
     if (uniform(random, 0.0, 100.0) < percent) cell = cell == kRoad ? kNoRoad : kRoad;
   }
   return features;
+}
+
+SentPicture of_bytes(std::uint64_t digest) { return {digest, {}}; }
+
+/// Other bytes of a picture at each call, with some noise.
+SentPicture encoded_anew(const PictureSketch& sketch) {
+  static std::uint64_t digest = 1'000'000;
+  return {++digest, with_parts_changed(sketch, 0.03)};
 }
 
 Odometry forward(double m) { return {m, 0.0, {}}; }
@@ -69,7 +80,7 @@ TEST(LastView, IsSeenAgainWhereALinkGoesRoundInItsLastPictures) {
 TEST(LastView, RemembersTheLastPicturesOnly) {
   LastView view;
   for (int col = 0; col < 20; ++col) {
-    EXPECT_EQ(view.take_in(street_at(col), 1000U + static_cast<unsigned>(col)), View::kNew);
+    EXPECT_EQ(view.take_in(street_at(col), of_bytes(1000U + static_cast<unsigned>(col))), View::kNew);
     view.move(forward(1.0), false);
   }
   EXPECT_EQ(view.take_in(street_at(4)), View::kRepeated);
@@ -79,20 +90,20 @@ TEST(LastView, RemembersTheLastPicturesOnly) {
 TEST(LastView, IsSeenAgainWhereThePictureOfAWoodIs) {
   LastView view;
   const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
-  EXPECT_EQ(view.take_in(wood, 7), View::kNew);
+  EXPECT_EQ(view.take_in(wood, of_bytes(7)), View::kNew);
   view.move(forward(20.0), true);
-  EXPECT_EQ(view.take_in(wood, 7), View::kRepeated);
-  EXPECT_EQ(view.take_in(wood, 8), View::kNew);
+  EXPECT_EQ(view.take_in(wood, of_bytes(7)), View::kRepeated);
+  EXPECT_EQ(view.take_in(wood, of_bytes(8)), View::kNew);
 }
 
 TEST(LastView, IsSeenAgainWhereThePictureIsTheSameThoughItWasMeasuredAnew) {
   LastView view;
-  EXPECT_EQ(view.take_in(street_at(3), 7), View::kNew);
+  EXPECT_EQ(view.take_in(street_at(3), of_bytes(7)), View::kNew);
   view.move(forward(0.6), true);
-  EXPECT_EQ(view.take_in(street_at(4), 7), View::kNew) << "it may hover";
+  EXPECT_EQ(view.take_in(street_at(4), of_bytes(7)), View::kNew) << "it may hover";
   view.move(forward(0.6), true);
-  EXPECT_EQ(view.take_in(street_at(5), 7), View::kRepeated);
-  EXPECT_EQ(view.take_in(street_at(6), 8), View::kNew);
+  EXPECT_EQ(view.take_in(street_at(5), of_bytes(7)), View::kRepeated);
+  EXPECT_EQ(view.take_in(street_at(6), of_bytes(8)), View::kNew);
 }
 
 TEST(LastView, IsSeenAgainWhereNoOdometryTellsThatTheVehicleHovers) {
@@ -130,6 +141,44 @@ TEST(LastView, StandsStillWhereItsRoadsDoNotMoveAsTheOdometryTells) {
   view.move(forward(1000.0), true);
   EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kStandsStill);
   EXPECT_EQ(view.take_in(crossing_after(10)), View::kNew);
+}
+
+TEST(LastView, StandsStillWhereItsPictureDoesThoughItIsEncodedAndMeasuredAnew) {
+  const PictureSketch sketch = random_sketch(1);
+  LastView view;
+  EXPECT_EQ(view.take_in(crossing_after(0), encoded_anew(sketch)), View::kNew);
+  view.move(forward(5.0), true);
+  EXPECT_EQ(view.take_in(crossing_after(7), encoded_anew(sketch)), View::kNew) << "not far enough to tell: 120 m seen";
+  view.move(forward(5.0), false);
+  EXPECT_EQ(view.take_in(crossing_after(3), encoded_anew(sketch)), View::kStandsStill) << "whatever the wind";
+  view.move(forward(-10.0), true);
+  EXPECT_EQ(view.take_in(crossing_after(9), encoded_anew(sketch)), View::kStandsStill);
+  EXPECT_EQ(view.take_in(crossing_after(9), encoded_anew(random_sketch(2))), View::kNew);
+}
+
+TEST(LastView, StandsStillWhereItsPictureDoesNotTurnWithTheVehicle) {
+  const PictureSketch sketch = random_sketch(1);
+  const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
+  LastView view;
+  EXPECT_EQ(view.take_in(wood, encoded_anew(sketch)), View::kNew);
+  view.move(Odometry{0.0, 0.0, Angle::degrees(9.0)}, true);
+  EXPECT_EQ(view.take_in(wood, encoded_anew(sketch)), View::kNew);
+  view.move(Odometry{0.0, 0.0, Angle::degrees(2.0)}, true);
+  EXPECT_EQ(view.take_in(wood, encoded_anew(sketch)), View::kStandsStill);
+}
+
+TEST(LastView, OfAVehicleThatStaysInPlaceMayStandStill) {
+  std::mt19937_64 random(3);
+  const PictureSketch sketch = random_sketch(1);
+  LastView view;
+  for (int i = 0; i < 50; ++i) {
+    EXPECT_EQ(view.take_in(noisy(crossing_after(i % 2), 3, random), encoded_anew(sketch)), View::kNew) << i;
+    view.move(forward(i % 2 == 0 ? 2.0 : -2.0), true);
+  }
+  for (int i = 0; i < 5; ++i) {
+    EXPECT_EQ(view.take_in(crossing_after(10 + i), encoded_anew(sketch)), View::kNew) << "nobody says that it moves";
+    view.move(std::nullopt, true);
+  }
 }
 
 TEST(LastView, StandsStillThoughItsHeightIsToldALittleOtherwise) {
@@ -194,7 +243,7 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsAttitudeIsToldA
   Flight flight(map_, start_, 4);
   ASSERT_TRUE(fly(tracker, flight, 10).converged());
   StepInput last = flight.step();
-  last.picture = 17;
+  last.picture = of_bytes(17);
   advance(tracker, last);
   std::mt19937_64 random(7);
   const GridPose stopped = flight.pose();
@@ -202,13 +251,37 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsAttitudeIsToldA
     StepInput step = flight.step(false);
     const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
     step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight.noise, random);
-    step.picture = 17;
+    step.picture = of_bytes(17);
     const TrackEstimate estimate = advance(tracker, step);
     EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
     EXPECT_FALSE(estimate.converged()) << "step " << i;
     EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
     EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
   }
+}
+
+TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsPicturesAreEncodedAnewToo) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 4);
+  ASSERT_TRUE(fly(tracker, flight, 10).converged());
+  StepInput last = flight.step();
+  const PictureSketch sketch = random_sketch(1);
+  last.picture = encoded_anew(sketch);
+  advance(tracker, last);
+  std::mt19937_64 random(7);
+  const GridPose stopped = flight.pose();
+  for (int i = 0; i < 15; ++i) {
+    StepInput step = flight.step(false);
+    const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
+    step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight.noise, random);
+    step.picture = encoded_anew(sketch);
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
+    EXPECT_FALSE(estimate.converged()) << "step " << i;
+    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
+    EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
+  }
+  EXPECT_TRUE(fly(tracker, flight, 5).converged());
 }
 
 TEST_F(Track, ClaimsNoPlaceThatAMovementCountedTwiceHasLedTo) {

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tests/support/code_of.hpp"
+#include "tests/support/sketches.hpp"
 
 namespace roadfix {
 namespace {
@@ -51,11 +52,12 @@ TrackerState flown() {
     state.recent.keep(FeatureMap::centred(CellArray(20 + i, 21, kNoRoad), 2.0));
     state.recent.move({15.0, 1.0, Angle::degrees(4.0)}, {{{1.0, 0, 0}, {0, 1.0, 0}, {0, 0, 1e-4}}});
   }
-  state.last_view = {{{0x123456789abcdef0U, 12.5, 0.25}, {0xfedcba9876543210U, 20.5, 0.5}}, true, {}};
+  state.last_view = {{{0x123456789abcdef0U, 12.5, 0.25}, {0xfedcba9876543210U, 20.5, 0.5}}, true, {}, {}};
   FeatureMap earlier = FeatureMap::centred(CellArray(3, 2, kRoad), 4.0);
   earlier.nadir_sigma_m = 5.25;
   earlier.nadir_heading_sigma = Angle::radians(0.01);
   state.last_view.earlier.keep(earlier);
+  state.last_view.earlier_picture = {testing::random_sketch(3), {12.5, -0.5, Angle::degrees(3.0)}};
   state.motion = {BodyVelocity{14.5, -0.25}, true, true};
   state.reach = Reach{{600'700.5, 6'399'400.25}, Angle::degrees(60.0), 31.5, Angle::degrees(6.0), 0.01};
   return state;
@@ -173,6 +175,7 @@ TEST(TrackerBytes, WithValuesThatNoTrackHasAreRefused) {
       [](TrackerState& s) { s.claim.log_odds = -0.5; },
       [](TrackerState& s) { s.last_view.seen[1].moved_m = -1.0; },
       [](TrackerState& s) { s.last_view.earlier = s.recent; },
+      [](TrackerState& s) { s.last_view.earlier_picture->sketch.parts[7] = 2; },
       [](TrackerState& s) { s.recent = frames_of({0.0}); },
       [](TrackerState& s) {
         s.recent = frames_of({1.0, 2.0});

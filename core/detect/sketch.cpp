@@ -1,6 +1,7 @@
 #include "core/detect/sketch.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <opencv2/imgproc.hpp>
 
 namespace roadfix {

@@ -6,7 +6,10 @@
 namespace roadfix {
 
 bool is_same_picture(const PictureSketch& a, const PictureSketch& b) {
+  // Text on the screen marks 0.37 of a calm sea; text, a letter box, a ring and a part of the airframe 0.48.
   constexpr double kMinMarkedShare = 0.5;
+  // JPEG of quality 30, noise of 10 levels and 18 numbers that change leave 0.93. After 3 m of flight over 300 m of
+  // ground it is at most 0.74, text that stays in place included.
   constexpr double kMinAgreement = 0.9;
   int agreement = 0;
   int marked_a = 0;

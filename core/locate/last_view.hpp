@@ -26,7 +26,8 @@ bool is_same_view(const FeatureMap& a, const FeatureMap& b);
 /// kRepeated: the same picture was seen before the vehicle moved, by its cells (is_same_view()) or by itself.
 /// kStandsStill: other bytes and cells, but the picture or its roads lie where they lay before the vehicle moved: the
 /// camera has stopped, or the odometry is wrong.
-enum class View { kNew, kRepeated, kStandsStill };
+/// kMayStandStill: so does the picture, for the first time: the vehicle may have leaned by as much as it moved.
+enum class View { kNew, kRepeated, kMayStandStill, kStandsStill };
 
 /// A camera's picture as it was sent, whatever height and attitude it is measured by.
 struct SentPicture {
@@ -46,7 +47,8 @@ struct SeenView {
 /// A picture that later ones are compared with.
 struct EarlierPicture {
   PictureSketch sketch;
-  BodyOffset moved;  ///< how far the vehicle is by the odometry, seen from where the picture was sent first
+  BodyOffset moved{};       ///< how far the vehicle is by the odometry, seen from where the picture was sent first
+  bool came_again = false;  ///< after the vehicle had moved
 
   friend bool operator==(const EarlierPicture&, const EarlierPicture&) = default;
 };
@@ -69,7 +71,7 @@ struct LastView {
 
  private:
   bool was_seen_before_it_moved(std::uint64_t digest);
-  bool is_earlier_picture(const PictureSketch& sketch, double side_m);
+  View compared(const PictureSketch& sketch, double side_m);
   bool lies_as_earlier(const FeatureMap& features);
 };
 

@@ -56,7 +56,7 @@ void pass_frame(auto& io, auto& frame) {
 void pass_view(auto& io, auto& view) { io(view.digest, view.moved_m, view.turned_rad); }
 
 void pass_picture(auto& io, auto& picture) {
-  io(picture.sketch, picture.moved.forward_m, picture.moved.right_m, picture.moved.turn);
+  io(picture.sketch, picture.moved.forward_m, picture.moved.right_m, picture.moved.turn, picture.came_again);
 }
 
 auto columns_of(auto& p) {

@@ -138,7 +138,7 @@ void Tracker::Step::see() {
     if (may_search()) state_.recent.keep(*features_);
     return;
   }
-  outcome_.measurement = Measurement::kRepeated;
+  outcome_.measurement = view == View::kMayStandStill ? Measurement::kUseless : Measurement::kRepeated;
   if (view == View::kStandsStill) state_.claim.reject();  // nobody knows whether the camera has stopped or the vehicle
 }
 

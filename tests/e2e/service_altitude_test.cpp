@@ -101,9 +101,11 @@ TEST_F(ServiceAltitude, TellsAPictureThatComesAgainEncodedAnewAndFromAnotherHeig
   step(pixels_, "&sequence=1&time_us=1&alt_m=1000&roll_deg=0&pitch_deg=0");
   const cv::Mat lighter = 1.02 * pixels_ + cv::Scalar::all(3);
   EXPECT_EQ(step(lighter, "&sequence=2&time_us=2000000&alt_m=990&roll_deg=3&pitch_deg=-2" + moved)["measurement"],
+            "useless");
+  EXPECT_EQ(step(0.97 * pixels_, "&sequence=3&time_us=3000000&alt_m=980&roll_deg=1&pitch_deg=0" + moved)["measurement"],
             "repeated");
   const cv::Mat other = noise_frame();
-  EXPECT_NE(step(other, "&sequence=3&time_us=3000000&alt_m=990&roll_deg=3&pitch_deg=-2" + moved)["measurement"],
+  EXPECT_NE(step(other, "&sequence=4&time_us=4000000&alt_m=980&roll_deg=1&pitch_deg=0" + moved)["measurement"],
             "repeated");
 }
 

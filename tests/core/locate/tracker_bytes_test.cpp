@@ -57,7 +57,7 @@ TrackerState flown() {
   earlier.nadir_sigma_m = 5.25;
   earlier.nadir_heading_sigma = Angle::radians(0.01);
   state.last_view.earlier.keep(earlier);
-  state.last_view.earlier_picture = {testing::random_sketch(3), {12.5, -0.5, Angle::degrees(3.0)}};
+  state.last_view.earlier_picture = {testing::random_sketch(3), {12.5, -0.5, Angle::degrees(3.0)}, true};
   state.motion = {BodyVelocity{14.5, -0.25}, true, true};
   state.reach = Reach{{600'700.5, 6'399'400.25}, Angle::degrees(60.0), 31.5, Angle::degrees(6.0), 0.01};
   return state;

@@ -135,11 +135,13 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
-/// As `fix --alt` with the query's prior; nullopt where the frame tells its height above ground.
+/// As `fix` with the query's prior, by --agl or --alt; nullopt where the frame tells no height.
 std::optional<Altitude> altitude_of(const FrameTruth& frame, const Query& query, const MapView& map) {
-  if (!frame.alt_m) return std::nullopt;
+  const auto* camera = std::get_if<FrameCamera>(&frame.view);
+  if (camera == nullptr) return std::nullopt;
+  if (!frame.alt_m) return Altitude{std::nullopt, camera->agl_m};
   return said_of(frame.file.string(), [&] {
-    return Altitude{*frame.alt_m, required_agl(map, region_of(map, query.prior).box, *frame.alt_m).middle_m()};
+    return Altitude{frame.alt_m, required_agl(map, region_of(map, query.prior).box, *frame.alt_m).middle_m()};
   });
 }
 

@@ -30,7 +30,7 @@ struct Query {
   std::string id;                      ///< "adiyaman/0007" or the frame's file
   SharedView view;                     ///< what the frame shows; nullptr where there is none
   std::optional<FeatureMap> features;  ///< instead of a view where the query is simulated
-  std::optional<Altitude> altitude;    ///< by which `view` got its size, of a frame that tells its height above the sea
+  std::optional<Altitude> altitude;    ///< from which `view` was taken, where that is told
   std::optional<GeoPose> truth;        ///< nullopt = the ground is not on the map
   Prior prior;
   double scale_range = 0.0;           ///< SearchOptions::scale_range
@@ -38,8 +38,8 @@ struct Query {
   std::string unasked;                ///< code of why it is not asked but counts as not found; empty = it is
 };
 
-/// What the query shows, in the size that it has if the vehicle is there; unchanged where the query tells no altitude,
-/// or the map does not know the ground of the place.
+/// What the query shows if the vehicle is there: in the size that it has then, and levelled. Unchanged where the query
+/// tells no altitude, or the map does not know the ground of the place.
 FeatureMap seen_above(const GeoPose& place, const Query& query, FeatureMap features, const MapView& map);
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's

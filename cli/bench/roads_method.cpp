@@ -77,7 +77,7 @@ class RoadsMethod : public Method {
     options.search.scale_range = query.scale_range;
     if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
     options.left_out = seen->left_out;
-    const Fix fix = locate_from(query.altitude, map_, seen->features, query.prior, options);
+    const Fix fix = locate_levelled(query.altitude, map_, seen->features, query.prior, options);
     answer.status = fix.status;
     answer.reason = fix.reason;
     answer.probability = fix.probability;

@@ -6,10 +6,13 @@
 #include <iomanip>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 
 #include "core/detect/frame_camera.hpp"
+#include "core/grid/relief.hpp"
 #include "core/locate/told_frames.hpp"
 #include "tests/cli/bench/bench_run.hpp"
+#include "tests/support/sloping_ground.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -78,13 +81,16 @@ TEST_F(BenchRunOfFrames, GivesNoFixWhereTheCameraHasStopped) {
   EXPECT_EQ(results[0].outcomes[2].answer.status, FixStatus::kNoFix);
 }
 
-/// What a camera above a place of the plane takes of the town, whose picture begins at (400000, 4000000).
-cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera& camera, cv::Size size) {
+/// What a camera above a place of the plane takes of the town, whose picture begins at (400000, 4000000), on ground of
+/// that relief.
+cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera& camera, cv::Size size,
+                   const std::optional<Relief>& relief = {}) {
   const Lens lens = lens_of(camera, size);
   cv::Mat places(size, CV_32FC2);
   for (int row = 0; row < size.height; ++row) {
     for (int col = 0; col < size.width; ++col) {
-      const cv::Point2d ground = ground_of(camera, lens.ray_of({col + 0.5, row + 0.5}).value()).value();
+      cv::Point2d ground = ground_of(camera, lens.ray_of({col + 0.5, row + 0.5}).value()).value();
+      if (relief) ground /= relief->stretch_at(ground.x, ground.y);
       const GridPoint at = moved(pose, {-ground.y, ground.x, {}}).position;
       places.at<cv::Point2f>(row, col) = cv::Point2d(at.east_m - 400000.0 - 0.5, 4000000.0 - at.north_m - 0.5);
     }
@@ -97,14 +103,16 @@ cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera&
 /// One frame of a tilted camera with a distorting lens, 250 m above a place where the town lies to all sides.
 class BenchRunOfACamera : public BenchRun {
  protected:
-  BenchRunOfACamera() {
+  BenchRunOfACamera() { take_frame(); }
+
+  void take_frame(const std::optional<Relief>& relief = {}) const {
     FrameCamera camera;
     camera.focal_px = 400.0;
     camera.agl_m = 250.0;
     camera.roll = Angle::degrees(-5);
     camera.pitch = Angle::degrees(8);
     camera.distortion = {-0.2, 0.05, 0.0, 0.0};
-    cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}));
+    cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}, relief));
   }
 
   /// `height`: the name of its column.
@@ -138,6 +146,11 @@ TEST_F(BenchRunOfACamera, PlacesTheUavByItsHeightAboveTheSeaWhereTheMapKnowsThat
   describe_frame("agl_m", 250.0);
   const double rho = run(kQueries, R"("roads")").at(0).outcomes.at(0).answer.rho_at_truth.value();
   write_elevation_model("dem.asc");
+  const testing::SlopingGround slope{grown({truth.position, truth.position}, 2000.0),
+                                     height_m({truth.position.east_m - 2000.0, 0.0}),
+                                     height_m({truth.position.east_m + 2000.0, 0.0})};
+  const Terrain terrain = slope.terrain();
+  take_frame(Relief(terrain, truth, 250.0));
   describe_frame("alt_m", height_m(truth.position) + 250.0);
   for (const char* prior : {R"("map")", R"({"radius_m": 200})"}) {
     const auto results = run(std::string(R"({"map": "town", "frames": "oblique.csv", "prior": )") + prior + "}",

@@ -14,15 +14,14 @@ using CellPosition = GridGeometry::CellPosition;
 constexpr double kLeastStretch = 0.5;
 constexpr double kMostStretch = 2.0;
 
-/// Cells around the nadir: so many to its left and right, before and behind it.
+/// What holds all that was reached, in cells from the nadir.
 struct Extent {
-  double left = 0.0, right = 0.0, before = 0.0, behind = 0.0;
+  CellPosition first{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  CellPosition last{-first.col, -first.row};
 
   void reach(double col, double row) {
-    left = std::max(left, -col);
-    right = std::max(right, col);
-    before = std::max(before, -row);
-    behind = std::max(behind, row);
+    first = {std::min(first.col, std::floor(col)), std::min(first.row, std::floor(row))};
+    last = {std::max(last.col, std::ceil(col)), std::max(last.row, std::ceil(row))};
   }
 };
 
@@ -96,9 +95,9 @@ FeatureMap levelled(const FeatureMap& features, const Relief& relief) {
     extent.reach(col / stretch, row / stretch);
   });
   FeatureMap level = features;
-  level.nadir = {std::ceil(extent.left), std::ceil(extent.before)};
-  const int cols = std::max(1, static_cast<int>(level.nadir.col + std::ceil(extent.right)));
-  const int rows = std::max(1, static_cast<int>(level.nadir.row + std::ceil(extent.behind)));
+  level.nadir = {-extent.first.col, -extent.first.row};
+  const int cols = std::max(1, static_cast<int>(extent.last.col - extent.first.col));
+  const int rows = std::max(1, static_cast<int>(extent.last.row - extent.first.row));
   level.cells = resampled_about(level.nadir, features, cols, rows, [&](double col, double row) {
     const double stretch = relief.stretch_of(cell_m * col, cell_m * row);
     return CellPosition{stretch * col, stretch * row};

@@ -79,15 +79,14 @@ FeatureMap Tracker::Step::seen_from_above_ground(const Altitude& told) {
     search_.see_from({told.above_sea_m, agl_m});
     outcome_.agl_m = agl_m;
   }
-  FeatureMap seen = seen_from(*input_.features, told, agl_m);
+  FeatureMap seen = in_cells_of(map_, seen_from(*input_.features, told, agl_m));
   if (!map_.terrain || !state_.claim.outweighs_chance()) return seen;
   const Cluster belief = heaviest_of(particles);
-  return is_narrow(belief) ? levelled(seen, Relief(*map_.terrain, belief.mean, agl_m)) : seen;
+  return is_narrow(belief) ? in_cells_of(map_, levelled(seen, Relief(*map_.terrain, belief.mean, agl_m))) : seen;
 }
 
 void Tracker::Step::take_in_features() {
-  features_ = input_.altitude ? in_cells_of(map_, seen_from_above_ground(*input_.altitude))
-                              : in_cells_of(map_, *input_.features);
+  features_ = input_.altitude ? seen_from_above_ground(*input_.altitude) : in_cells_of(map_, *input_.features);
   // The particles do not include this error; it is added to the answer, once.
   state_.nadir_sigma_m = std::exchange(features_->nadir_sigma_m, 0.0);
 }

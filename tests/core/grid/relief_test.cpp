@@ -114,5 +114,15 @@ TEST(Levelled, KeepsAllGroundThatTheFrameShows) {
   EXPECT_TRUE(is_observed(level.cells.get(1, static_cast<int>(level.nadir.row)))) << "the western edge";
 }
 
+TEST(Levelled, HasNoMoreCellsForANadirFarOffTheFrame) {
+  const Terrain terrain = rising_to_the_east(0.05);
+  FeatureMap frame = streets(50);
+  frame.nadir = {25.0, 180.0};
+  const FeatureMap level = levelled(frame, Relief(terrain, {kHere, {}}, kAglM));
+  EXPECT_LT(level.cells.rows(), 60);
+  EXPECT_NEAR(level.nadir.row, 180.0, 5.0);
+  EXPECT_GT(level.cells.observed_count(), 0.9 * 50 * 50);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -23,7 +23,7 @@
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
 #include "core/geodesy/latlon.hpp"
-#include "core/locate/altitude.hpp"
+#include "core/locate/levelled_fix.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
@@ -102,6 +102,7 @@ Search search_of(const FixArguments& options, bool several) {
 Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
   FixOptions options = search.options;
   options.own_frame = std::move(input.own_frame);
+  options.others = std::move(input.others);
   options.left_out = input.left_out;
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);

@@ -65,25 +65,29 @@ CellArray map_under(const MapView& map, const FeatureMap& features, const GridPo
 }
 
 cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imagery, const Query& query,
-                          const FeatureMap& features, const Answer& answer) {
-  const CellArray nothing(features.cells.cols(), features.cells.rows(), kNoRoad);
-  const auto at = [&](const GeoPose& place) { return seen_above(place, query, features, map); };
+                          std::span<const PlacedFeatures> frames, const Answer& answer) {
+  const auto nothing_in = [](const CellArray& cells) { return CellArray(cells.cols(), cells.rows(), kNoRoad); };
+  const CellArray after = as_one(frames).cells;
   std::vector<Panel> panels;
+  std::vector<Panel> both;
   if (query.truth) {
-    const cv::Mat before = ground_before(imagery, at(*query.truth), on_grid(*query.truth, map.zone));
+    const FeatureMap seen = seen_from(*query.truth, query, frames, map);
+    const GridPose pose = on_grid(*query.truth, map.zone);
+    const cv::Mat before = ground_before(imagery, seen, pose);
+    const CellArray roads = map_under(map, seen, pose);
     if (!before.empty()) panels.push_back({"before", before});
+    both = {{"roads before", agreement(roads, nothing_in(roads))},
+            {"roads after", agreement(nothing_in(after), after)},
+            {"both, true place", agreement(roads, seen.cells)}};
+  } else {
+    both = {{"roads after", agreement(nothing_in(after), after)}};
   }
   if (query.view) panels.push_back({"after", query.view->image.pixels});
-  CellArray there;
-  if (query.truth) {
-    there = map_under(map, at(*query.truth), on_grid(*query.truth, map.zone));
-    panels.push_back({"roads before", agreement(there, nothing)});
-  }
-  panels.push_back({"roads after", agreement(nothing, features.cells)});
-  if (query.truth) panels.push_back({"both, true place", agreement(there, features.cells)});
+  panels.insert(panels.end(), both.begin(), both.end());
   if (answer.best) {
-    const CellArray guessed = map_under(map, at(*answer.best), on_grid(*answer.best, map.zone));
-    panels.push_back({"both, best guess", agreement(guessed, features.cells)});
+    const FeatureMap seen = seen_from(*answer.best, query, frames, map);
+    const CellArray roads = map_under(map, seen, on_grid(*answer.best, map.zone));
+    panels.push_back({"both, best guess", agreement(roads, seen.cells)});
   }
   return side_by_side(panels, kPanelPx);
 }

@@ -18,8 +18,8 @@ CellArray map_under(const MapView& map, const FeatureMap& features, const GridPo
 
 /// Panels beside each other, all with the direction of travel up: imagery of the map (where there is some) and the
 /// frame, roads of the map, roads of the frame, their agreement at the true pose, and at the best guess.
-/// `imagery` may be empty; poses that are not known give no panel.
+/// `imagery` may be empty; poses that are not known give no panel. `frames`: as of seen_from().
 cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imagery, const Query& query,
-                          const FeatureMap& features, const Answer& answer);
+                          std::span<const PlacedFeatures> frames, const Answer& answer);
 
 }  // namespace roadfix::bench

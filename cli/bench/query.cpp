@@ -1,19 +1,18 @@
 #include "cli/bench/query.hpp"
 
-#include <utility>
-
-#include "core/grid/relief.hpp"
+#include "cli/limits.hpp"
+#include "core/locate/levelled_fix.hpp"
 
 namespace roadfix::bench {
 
-FeatureMap seen_above(const GeoPose& place, const Query& query, FeatureMap features, const MapView& map) {
-  if (!query.altitude || !map.terrain) return features;
-  const GridPose there = on_grid(place, map.zone);
-  double agl_m = query.altitude->agl_m;
-  if (const auto above_sea_m = query.altitude->above_sea_m) {
-    agl_m = map.terrain->height_above_ground_m(there.position, *above_sea_m).value_or(agl_m);
-  }
-  return levelled(seen_from(std::move(features), *query.altitude, agl_m), Relief(*map.terrain, there, agl_m));
+FeatureMap as_one(std::span<const PlacedFeatures> frames) {
+  return frames.size() == 1 ? frames.front().features : combined(frames, cli::kMaxCells);
+}
+
+FeatureMap seen_from(const GeoPose& place, const Query& query, std::span<const PlacedFeatures> frames,
+                     const MapView& map) {
+  if (!query.altitude || !map.terrain) return as_one(frames);
+  return as_one(levelled_frames(map, frames, *query.altitude, on_grid(place, map.zone)).frames);
 }
 
 }  // namespace roadfix::bench

@@ -38,9 +38,13 @@ struct Query {
   std::string unasked;                ///< code of why it is not asked but counts as not found; empty = it is
 };
 
-/// What the query shows if the vehicle is there: in the size that it has then, and levelled. Unchanged where the query
-/// tells no altitude, or the map does not know the ground of the place.
-FeatureMap seen_above(const GeoPose& place, const Query& query, FeatureMap features, const MapView& map);
+/// The only one, or combined().
+FeatureMap as_one(std::span<const PlacedFeatures> frames);
+
+/// What the frames of the query, its own first, show together if the vehicle is there: as levelled_frames(), or as they
+/// are where the query tells no altitude or the map has no heights.
+FeatureMap seen_from(const GeoPose& place, const Query& query, std::span<const PlacedFeatures> frames,
+                     const MapView& map);
 
 /// Keypoints of a frame matched with the imagery of the map, and those of them at the right place: the paper's
 /// figure 1.

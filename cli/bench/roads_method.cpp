@@ -12,7 +12,7 @@
 #include "cli/limits.hpp"
 #include "core/detect/frame.hpp"
 #include "core/grid/combine.hpp"
-#include "core/locate/altitude.hpp"
+#include "core/locate/levelled_fix.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/told_frames.hpp"
 #include "core/units/error.hpp"
@@ -75,7 +75,10 @@ class RoadsMethod : public Method {
     }
     FixOptions options = options_.fix;
     options.search.scale_range = query.scale_range;
-    if (parts.features.size() > 1) options.own_frame = parts.features.front().features;
+    if (parts.features.size() > 1) {
+      options.own_frame = parts.features.front().features;
+      options.others.assign(std::next(parts.features.begin()), parts.features.end());
+    }
     options.left_out = seen->left_out;
     const Fix fix = locate_levelled(query.altitude, map_, seen->features, query.prior, options);
     answer.status = fix.status;
@@ -89,16 +92,14 @@ class RoadsMethod : public Method {
     answer.left_out = seen->left_out;
     answer.time_ms = parts.detection_ms + ms_since(start);
     if (query.truth) {
-      const FeatureMap there = seen_above(*query.truth, query, seen->features, map_);
+      const FeatureMap there = seen_from(*query.truth, query, parts.features, map_);
       answer.rho_at_truth = match(map_, there, std::span(&*query.truth, 1)).front().rho;
     }
     return answer;
   }
 
   cv::Mat drawn(const Query& query, const Answer& answer, std::span<const Orthoimage> imagery) const override {
-    const std::vector<PlacedFeatures> parts = parts_of(query).features;
-    const FeatureMap features = parts.size() == 1 ? parts.front().features : combined(parts, cli::kMaxCells);
-    return agreement_picture(map_, imagery, query, features, answer);
+    return agreement_picture(map_, imagery, query, parts_of(query).features, answer);
   }
 
  private:

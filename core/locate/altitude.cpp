@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/grid/relief.hpp"
 #include "core/match/scales.hpp"
 #include "core/units/error.hpp"
 
@@ -15,17 +14,6 @@ namespace {
 
 constexpr double kSameSize = 0.05;  // the size that a search finds, and the one that the ground gives
 constexpr double kNoRange = 0.02;   // no more than heights of the ground err by, or a search can tell
-
-// What is displaced by less is found as it is, and as sure.
-constexpr double kLeastShiftM = 3.0;
-
-/// Whether a search that was told what lies around a place found that place: displaced, it may have been beside it.
-bool is_found_again(const GridPose& found, const GridPose& told) {
-  constexpr double kBesideM = 50.0;
-  const Angle turned = Angle::degrees(8.0);
-  return distance_m(found.position, told.position) <= kBesideM &&
-         angular_distance(found.heading, told.heading) <= turned;
-}
 
 std::optional<HeightRange> ground_of(const MapView& map, const GridBox& box) {
   return map.terrain ? map.terrain->heights_within(box) : std::nullopt;
@@ -124,27 +112,6 @@ Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, con
   Fix fix = locate(map, seen_from(features, *altitude, agl_m), prior, sized);
   relate_to_ground(fix, map, above_sea_m, agl_m);
   if (claims_a_place(fix)) require_right_size(fix, options.search.scale_range);
-  return fix;
-}
-
-Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
-                    const Prior& prior, const FixOptions& options) {
-  Fix fix = locate_from(altitude, map, features, prior, options);
-  if (!altitude || !map.terrain || options.own_frame || fix.modes.empty()) return fix;
-  const GridPose place = on_grid(fix.modes.front().pose, map.zone);
-  const Altitude there{altitude->above_sea_m, fix.modes.front().agl_m.value_or(altitude->agl_m)};
-  const FeatureMap seen = seen_from(features, *altitude, there.agl_m);
-  const Relief relief(*map.terrain, place, there.agl_m);
-  if (relief.largest_shift_m(seen) < kLeastShiftM) return fix;
-  Fix again = locate_from(there, map, levelled(seen, relief), prior, options);
-  again.search_time += fix.search_time;
-  if (!again.complete || again.modes.empty()) return fix;
-  if (is_found_again(on_grid(again.modes.front().pose, map.zone), place)) return again;
-  if (claims_a_place(fix)) {
-    refuse_place(fix, "terrain-contradicts",
-                 "the roads fit best at a place where the relief of the ground should displace them otherwise: check "
-                 "the heights of the map's ground, and the height above it or the sea");
-  }
   return fix;
 }
 

@@ -1,5 +1,5 @@
-// Ground that is not level, where the map knows its heights (MapView::terrain): how large it is seen by a vehicle that
-// knows its height above the sea follows from where that is, and so does how its relief displaces what is seen.
+// Height above ground from the height above the sea, where the map knows the heights of its ground (MapView::terrain).
+// Where the ground is not level, how large it is seen follows from where the vehicle is.
 #pragma once
 
 #include <optional>
@@ -49,11 +49,5 @@ FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m
 /// ("terrain-contradicts"). Throws as locate().
 Fix locate_from(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
                 const Prior& prior, const FixOptions& options);
-
-/// locate_from(), and where the relief around the best place displaces what was seen, once more with the features
-/// levelled (core/grid/relief.hpp). The second search has to find that place again; if not, it is no likely one
-/// ("terrain-contradicts"). Frames that were laid together are not levelled, nor is anything by no altitude at all.
-Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
-                    const Prior& prior, const FixOptions& options);
 
 }  // namespace roadfix

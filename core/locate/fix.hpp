@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/geodesy/geo_pose.hpp"
+#include "core/grid/combine.hpp"
 #include "core/grid/feature_map.hpp"
 #include "core/locate/calibration.hpp"
 #include "core/locate/ellipse.hpp"
@@ -27,6 +28,8 @@ struct FixOptions {
   /// If several frames were laid together: the one whose position is asked for. It has to confirm a likely place by
   /// itself.
   std::optional<FeatureMap> own_frame{};
+  /// Those that were laid around it, from where each was taken: locate_levelled() lays them together anew.
+  std::vector<PlacedFeatures> others{};
   /// FramesTogether::left_out: the own frame, 0, confirms no place if it is one of them.
   std::vector<std::size_t> left_out{};
   std::shared_ptr<const Calibration> calibration = shipped_calibration();  ///< never nullptr

@@ -1,5 +1,6 @@
 #include "server/api/features.hpp"
 
+#include <iterator>
 #include <utility>
 #include <variant>
 
@@ -34,6 +35,7 @@ Features together(Features first, std::vector<OtherFeatures> others, double max_
   first.map = std::move(laid.features);
   first.left_out = std::move(laid.left_out);
   first.own_frame = std::move(parts.front().features);
+  first.others.assign(std::next(parts.begin()), parts.end());
   return first;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/detect/frame.hpp"
 #include "core/detect/frame_image.hpp"
+#include "core/grid/combine.hpp"
 #include "core/grid/picture_sketch.hpp"
 #include "core/units/planar.hpp"
 
@@ -25,6 +26,7 @@ struct Features {
   std::optional<std::string> detector{};        ///< of frames: RoadDetector::describe()
   std::optional<PictureSketch> sketch{};        ///< of a frame as it was sent
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
+  std::vector<PlacedFeatures> others{};         ///< those that are laid around it
   std::vector<std::size_t> left_out{};          ///< FramesTogether::left_out, the first picture being 0
 };
 

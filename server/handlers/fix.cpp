@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/locate/levelled_fix.hpp"
 #include "server/api/altitude_request.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_json.hpp"
@@ -46,9 +47,10 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const PoseRegion region = search_region(map->view, prior, options);
   const auto altitude = api::take_altitude(
       content.fields, [&](double above_sea_m) { return required_agl(map->view, region.box, above_sea_m).middle_m(); });
-  const api::Features features = features_of(service, request, content, map->view);
+  api::Features features = features_of(service, request, content, map->view);
   options.calibration = service.calibration;
-  options.own_frame = features.own_frame;
+  options.own_frame = std::move(features.own_frame);
+  options.others = std::move(features.others);
   options.left_out = features.left_out;
   const api::HangUp hang_up(request.abandoned);
   const SearchThreads::Share share(service.search_threads);

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 
-#include "core/grid/relief.hpp"
 #include "tests/core/locate/locate_fixture.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/random_pose.hpp"
@@ -111,52 +110,6 @@ TEST_F(Altitudes, GiveNoFixWhereTheGroundOfThePlaceIsUnknown) {
   view_.terrain = holed;
   const Fix fix = locate_from(altitude_, view_, seen(truth, altitude_), {}, {});
   EXPECT_EQ(fix.reason, "terrain-contradicts") << fix.explanation;
-}
-
-/// Above a town on a slope of a quarter, in whose relief its streets are shown.
-class Slopes : public Altitudes {
- protected:
-  Slopes() {
-    ground_.east_m = 600.0;
-    view_.terrain = std::make_shared<const Terrain>(ground_.terrain());
-  }
-  double agl_m(const GridPose& truth) const { return kAboveSeaM - ground_.height_m(truth.position); }
-  FeatureMap displaced(const GridPose& truth) {
-    const FeatureMap ground = observed_at(map_, truth, 260, 260, 2.0, {0.1, 0.1}, random_);
-    return shown_in_relief(ground, Relief(*view_.terrain, truth, agl_m(truth)), 180, 180);
-  }
-
-  static constexpr double kAboveSeaM = 800.0;
-};
-
-TEST_F(Slopes, AreFoundByWhatTheyWouldShowIfTheyWereLevel) {
-  for (int i = 0; i < 3; ++i) {
-    const GridPose truth = pose_within(view_.extent, 350.0, random_);
-    const Prior near = around(view_, truth.position, 150.0);
-    const FeatureMap features = displaced(truth);
-    const Fix as_shown = locate_levelled(std::nullopt, view_, features, near, {});
-    ASSERT_FALSE(as_shown.modes.empty());
-    EXPECT_GT(error_m(as_shown.modes[0].pose, truth), 1.5);
-    for (const auto above_sea_m : {std::optional<double>(), std::optional(kAboveSeaM)}) {
-      const Fix fix = locate_levelled(Altitude{above_sea_m, agl_m(truth)}, view_, features, near, {});
-      ASSERT_EQ(fix.status, FixStatus::kFix) << fix.reason << ' ' << fix.explanation;
-      EXPECT_LT(error_m(fix.modes[0].pose, truth), above_sea_m ? 5.0 : 1.0) << "a search over sizes has larger steps";
-      EXPECT_GT(fix.modes[0].rho, as_shown.modes[0].rho + 0.05);
-    }
-  }
-}
-
-TEST_F(Slopes, AreNoneWhereNothingShowsThem) {
-  const GridPose truth = pose_within(view_.extent, 350.0, random_);
-  const FeatureMap level = observed_at(map_, truth, 180, 180, 2.0, {0.1, 0.1}, random_);
-  ASSERT_EQ(locate_levelled(std::nullopt, view_, level, {}, {}).status, FixStatus::kFix);
-  const auto refusal_from = [&](double agl_m) {
-    const Fix fix = locate_levelled(Altitude{std::nullopt, agl_m}, view_, level, {}, {});
-    EXPECT_LE(fix.probability, 0.5);
-    return fix.reason;
-  };
-  EXPECT_EQ(refusal_from(120.0), "not-above-chance");
-  EXPECT_EQ(refusal_from(60.0), "terrain-contradicts") << "the place is not found again";
 }
 
 TEST_F(Altitudes, AreRefusedBelowTheGroundAndWhereTheMapKnowsNone) {

@@ -1,5 +1,6 @@
 #include "core/detect/sketch.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
@@ -9,8 +10,12 @@ namespace roadfix {
 PictureSketch sketch_of(const cv::Mat& pixels) {
   constexpr int kAround = 7;            // parts across, of what a part is compared with
   constexpr float kPlainLevels = 2.5F;  // noise and codecs change the mean of a part by less
+  cv::Mat half = pixels;
+  if (std::min(pixels.cols, pixels.rows) >= 4 * PictureSketch::kAcross) {
+    cv::resize(pixels, half, pixels.size() / 2, 0.0, 0.0, cv::INTER_AREA);  // OpenCV halves much faster
+  }
   cv::Mat parts;
-  cv::resize(pixels, parts, {PictureSketch::kAcross, PictureSketch::kAcross}, 0.0, 0.0, cv::INTER_AREA);
+  cv::resize(half, parts, {PictureSketch::kAcross, PictureSketch::kAcross}, 0.0, 0.0, cv::INTER_AREA);
   if (parts.channels() == 3) cv::cvtColor(parts, parts, cv::COLOR_BGR2GRAY);
   parts.convertTo(parts, CV_32F);
   cv::Mat around;

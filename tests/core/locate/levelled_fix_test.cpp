@@ -18,7 +18,7 @@ namespace {
 using testing::observed_at;
 using testing::pose_within;
 
-/// Above a town on a slope of a quarter, in whose relief its streets are shown.
+/// Above a town on a slope of a sixth, in whose relief its streets are shown.
 class Slopes : public testing::Locate {
  protected:
   Slopes() { view_.terrain = std::make_shared<const Terrain>(ground_.terrain()); }
@@ -38,7 +38,7 @@ class Slopes : public testing::Locate {
 };
 
 TEST_F(Slopes, AreFoundByWhatTheyWouldShowIfTheyWereLevel) {
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < 2; ++i) {
     const GridPose truth = pose_within(view_.extent, 350.0, random_);
     const Prior near = around(truth.position, 150.0);
     const FeatureMap features = displaced(truth);

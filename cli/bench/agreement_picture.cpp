@@ -69,25 +69,24 @@ cv::Mat agreement_picture(const MapView& map, std::span<const Orthoimage> imager
   const auto nothing_in = [](const CellArray& cells) { return CellArray(cells.cols(), cells.rows(), kNoRoad); };
   const CellArray after = as_one(frames).cells;
   std::vector<Panel> panels;
-  std::vector<Panel> both;
+  FeatureMap seen;  // from the true place
+  CellArray there;
   if (query.truth) {
-    const FeatureMap seen = seen_from(*query.truth, query, frames, map);
-    const GridPose pose = on_grid(*query.truth, map.zone);
-    const cv::Mat before = ground_before(imagery, seen, pose);
-    const CellArray roads = map_under(map, seen, pose);
+    seen = seen_from(*query.truth, query, frames, map);
+    const cv::Mat before = ground_before(imagery, seen, on_grid(*query.truth, map.zone));
     if (!before.empty()) panels.push_back({"before", before});
-    both = {{"roads before", agreement(roads, nothing_in(roads))},
-            {"roads after", agreement(nothing_in(after), after)},
-            {"both, true place", agreement(roads, seen.cells)}};
-  } else {
-    both = {{"roads after", agreement(nothing_in(after), after)}};
   }
   if (query.view) panels.push_back({"after", query.view->image.pixels});
-  panels.insert(panels.end(), both.begin(), both.end());
+  if (query.truth) {
+    there = map_under(map, seen, on_grid(*query.truth, map.zone));
+    panels.push_back({"roads before", agreement(there, nothing_in(there))});
+  }
+  panels.push_back({"roads after", agreement(nothing_in(after), after)});
+  if (query.truth) panels.push_back({"both, true place", agreement(there, seen.cells)});
   if (answer.best) {
-    const FeatureMap seen = seen_from(*answer.best, query, frames, map);
-    const CellArray roads = map_under(map, seen, on_grid(*answer.best, map.zone));
-    panels.push_back({"both, best guess", agreement(roads, seen.cells)});
+    const FeatureMap guessed = seen_from(*answer.best, query, frames, map);
+    const CellArray below = map_under(map, guessed, on_grid(*answer.best, map.zone));
+    panels.push_back({"both, best guess", agreement(below, guessed.cells)});
   }
   return side_by_side(panels, kPanelPx);
 }

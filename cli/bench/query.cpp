@@ -12,7 +12,7 @@ FeatureMap as_one(std::span<const PlacedFeatures> frames) {
 FeatureMap seen_from(const GeoPose& place, const Query& query, std::span<const PlacedFeatures> frames,
                      const MapView& map) {
   if (!query.altitude || !map.terrain) return as_one(frames);
-  return as_one(levelled_frames(map, frames, *query.altitude, on_grid(place, map.zone)).frames);
+  return as_one(levelled_frames(map, frames, *query.altitude, on_grid(place, map.zone)));
 }
 
 }  // namespace roadfix::bench

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/grid/sampling.hpp"
 
@@ -40,9 +41,10 @@ void along_edges(const FeatureMap& features, const Visit& visit) {
   }
 }
 
-/// Each cell from where `source_of` says, both in cells from the nadir.
+/// Each cell of `source` anew, from where `source_of` says, both in cells from the nadir.
 template <typename SourceOf>
-CellArray resampled_about(CellPosition nadir, const FeatureMap& source, int cols, int rows, const SourceOf& source_of) {
+FeatureMap resampled_about(CellPosition nadir, const FeatureMap& source, int cols, int rows,
+                           const SourceOf& source_of) {
   CellArray cells(cols, rows);
   for (int row = 0; row < rows; ++row) {
     for (int col = 0; col < cols; ++col) {
@@ -50,7 +52,7 @@ CellArray resampled_about(CellPosition nadir, const FeatureMap& source, int cols
       cells.at(col, row) = bilinear(source.cells, {source.nadir.col + from.col, source.nadir.row + from.row});
     }
   }
-  return cells;
+  return {std::move(cells), source.cell_m, nadir, source.nadir_sigma_m, source.nadir_heading_sigma};
 }
 
 }  // namespace
@@ -94,25 +96,20 @@ FeatureMap levelled(const FeatureMap& features, const Relief& relief) {
     const double stretch = relief.stretch_at(cell_m * col, cell_m * row);
     extent.reach(col / stretch, row / stretch);
   });
-  FeatureMap level = features;
-  level.nadir = {-extent.first.col, -extent.first.row};
   const int cols = std::max(1, static_cast<int>(extent.last.col - extent.first.col));
   const int rows = std::max(1, static_cast<int>(extent.last.row - extent.first.row));
-  level.cells = resampled_about(level.nadir, features, cols, rows, [&](double col, double row) {
+  const CellPosition nadir{-extent.first.col, -extent.first.row};
+  return resampled_about(nadir, features, cols, rows, [&](double col, double row) {
     const double stretch = relief.stretch_of(cell_m * col, cell_m * row);
     return CellPosition{stretch * col, stretch * row};
   });
-  return level;
 }
 
 FeatureMap shown_in_relief(const FeatureMap& ground, const Relief& relief, int cols, int rows) {
-  FeatureMap shown = ground;
-  shown.nadir = {0.5 * cols, 0.5 * rows};
-  shown.cells = resampled_about(shown.nadir, ground, cols, rows, [&](double col, double row) {
+  return resampled_about({0.5 * cols, 0.5 * rows}, ground, cols, rows, [&](double col, double row) {
     const double stretch = relief.stretch_at(ground.cell_m * col, ground.cell_m * row);
     return CellPosition{col / stretch, row / stretch};
   });
-  return shown;
 }
 
 }  // namespace roadfix

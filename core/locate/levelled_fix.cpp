@@ -36,6 +36,31 @@ std::vector<PlacedFeatures> frames_of(const FeatureMap& features, const FixOptio
   return frames;
 }
 
+/// A frame where it was taken, if the first of all was at `place`.
+struct TakenFrame {
+  double agl_m;
+  FeatureMap seen;  ///< in the size that this height gives it
+  Relief relief;
+};
+
+TakenFrame taken_from(const MapView& map, const PlacedFeatures& frame, const Altitude& altitude,
+                      const GridPose& place) {
+  const GridPose pose = moved(place, frame.offset);
+  const double agl_m = agl_at(map, altitude, pose.position);
+  return {agl_m, seen_from(frame.features, altitude, agl_m), Relief(*map.terrain, pose, agl_m)};
+}
+
+/// By the relief, and by heights that differ from that of the first frame.
+bool is_displaced(const MapView& map, std::span<const PlacedFeatures> frames, const Altitude& altitude,
+                  const GridPose& place) {
+  const double agl_m = agl_at(map, altitude, place.position);
+  return std::ranges::any_of(frames, [&](const PlacedFeatures& frame) {
+    const TakenFrame taken = taken_from(map, frame, altitude, place);
+    const double grown_m = 0.5 * taken.seen.side_m() * std::abs(1.0 - agl_m / taken.agl_m);
+    return grown_m + taken.relief.largest_shift_m(taken.seen) >= kLeastShiftM;
+  });
+}
+
 /// locate_from(), of frames in place of those that the options have.
 Fix locate_frames(const Altitude& altitude, const MapView& map, std::vector<PlacedFeatures> frames, const Prior& prior,
                   FixOptions options) {
@@ -48,19 +73,13 @@ Fix locate_frames(const Altitude& altitude, const MapView& map, std::vector<Plac
 
 }  // namespace
 
-LevelledFrames levelled_frames(const MapView& map, std::span<const PlacedFeatures> frames, const Altitude& altitude,
-                               const GridPose& place) {
-  const double agl_m = agl_at(map, altitude, place.position);
-  LevelledFrames level;
+std::vector<PlacedFeatures> levelled_frames(const MapView& map, std::span<const PlacedFeatures> frames,
+                                            const Altitude& altitude, const GridPose& place) {
+  std::vector<PlacedFeatures> level;
   for (const PlacedFeatures& frame : frames) {
-    const GridPose pose = moved(place, frame.offset);
-    const double agl_here_m = agl_at(map, altitude, pose.position);
-    const FeatureMap seen = seen_from(frame.features, altitude, agl_here_m);
-    const Relief relief(*map.terrain, pose, agl_here_m);
-    const double grown_m = 0.5 * seen.side_m() * std::abs(1.0 - agl_m / agl_here_m);
-    level.largest_shift_m = std::max(level.largest_shift_m, grown_m + relief.largest_shift_m(seen));
-    const double cell_m = level.frames.empty() ? seen.cell_m : level.frames.front().features.cell_m;
-    level.frames.push_back({resampled(levelled(seen, relief), cell_m), frame.offset});
+    const TakenFrame taken = taken_from(map, frame, altitude, place);
+    const double cell_m = level.empty() ? taken.seen.cell_m : level.front().features.cell_m;
+    level.push_back({resampled(levelled(taken.seen, taken.relief), cell_m), frame.offset});
   }
   return level;
 }
@@ -70,10 +89,10 @@ Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map,
   Fix fix = locate_from(altitude, map, features, prior, options);
   if (!altitude || !map.terrain || fix.modes.empty()) return fix;
   const GridPose place = on_grid(fix.modes.front().pose, map.zone);
-  LevelledFrames level = levelled_frames(map, frames_of(features, options), *altitude, place);
-  if (level.largest_shift_m < kLeastShiftM) return fix;
+  const std::vector<PlacedFeatures> frames = frames_of(features, options);
+  if (!is_displaced(map, frames, *altitude, place)) return fix;
   const Altitude there{altitude->above_sea_m, agl_at(map, *altitude, place.position)};
-  Fix again = locate_frames(there, map, std::move(level.frames), prior, options);
+  Fix again = locate_frames(there, map, levelled_frames(map, frames, *altitude, place), prior, options);
   again.search_time += fix.search_time;
   if (!again.complete || again.modes.empty()) return fix;
   if (is_found_again(on_grid(again.modes.front().pose, map.zone), place)) return again;

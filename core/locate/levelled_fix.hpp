@@ -12,16 +12,11 @@
 
 namespace roadfix {
 
-struct LevelledFrames {
-  std::vector<PlacedFeatures> frames;  ///< in cells of one size
-  double largest_shift_m = 0.0;  ///< of what they show, by the relief and by heights that differ from frame to frame
-};
-
 /// What frames show if the vehicle took the first of them at `place`, and the others at their offsets from there: each
-/// in the size that its height above the ground gives it, and levelled (core/grid/relief.hpp). The map has heights;
-/// `frames` is not empty, and all of it was made for `altitude`.
-LevelledFrames levelled_frames(const MapView& map, std::span<const PlacedFeatures> frames, const Altitude& altitude,
-                               const GridPose& place);
+/// in the size that its height above the ground gives it, and levelled (core/grid/relief.hpp), in cells of one size.
+/// The map has heights; `frames` is not empty, and all of it was made for `altitude`.
+std::vector<PlacedFeatures> levelled_frames(const MapView& map, std::span<const PlacedFeatures> frames,
+                                            const Altitude& altitude, const GridPose& place);
 
 /// locate_from(), and where the relief around the best place displaces what was seen, once more with that levelled. The
 /// second search has to find that place again; if not, it is no likely one ("terrain-contradicts"). Nothing is levelled

@@ -184,7 +184,8 @@ Features detected(const Content& content, const Detection& detection, const Limi
   const Fields& fields = content.fields;
   Detection asked = detection;
   asked.cell_m = fields.optional_number("cell_m", {0.1, 100.0}).value_or(detection.cell_m);
-  const SeenFrame frame = seen_frame(given_frame(content, limits, detection.stop), detection.detector, limits.pixels);
+  const SeenFrame frame =
+      seen_frame(given_frame(content, limits, detection.stop), detection.detector, limits.pixels, detection.sketched);
   const GroundImage& ground = frame.view.image;
   require_few_pixels(ground, detection.detector, limits);
   const double cells = static_cast<double>(ground.pixels.total()) * std::pow(ground.gsd_m / asked.cell_m, 2.0);

@@ -9,10 +9,10 @@
 
 namespace roadfix::api {
 
-SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels) {
+SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels, bool sketched) {
   const FrameScale& scale = frame.scale;
   FramePixels image = frame_image(std::move(frame.pixels), frame.border);
-  const PictureSketch sketch = sketch_of(image.pixels);
+  const auto sketch = sketched ? std::optional(sketch_of(image.pixels)) : std::nullopt;
   SeenFrame seen{ground_seen(std::move(image), scale.view, detector, static_cast<double>(max_pixels)), sketch};
   if (scale.in_file) seen.camera_in_file = std::get<FrameCamera>(scale.view);
   return seen;

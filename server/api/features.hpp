@@ -24,7 +24,7 @@ struct Features {
   std::optional<std::chrono::duration<double, std::milli>> detect_time{};
   std::optional<FrameCamera> camera_in_file{};  ///< of a frame whose file tells it
   std::optional<std::string> detector{};        ///< of frames: RoadDetector::describe()
-  std::optional<PictureSketch> sketch{};        ///< of a frame as it was sent
+  std::optional<PictureSketch> sketch{};        ///< of a frame as it was sent, where asked for
   std::optional<FeatureMap> own_frame{};        ///< where others are laid around it: the first picture by itself
   std::vector<PlacedFeatures> others{};         ///< those that are laid around it
   std::vector<std::size_t> left_out{};          ///< FramesTogether::left_out, the first picture being 0
@@ -45,12 +45,12 @@ struct Frame {
 
 struct SeenFrame {
   GroundView view;
-  PictureSketch sketch{};
+  std::optional<PictureSketch> sketch{};        ///< where asked for
   std::optional<FrameCamera> camera_in_file{};  ///< where it was read from there
 };
 
 /// Throws what frame_image() and ground_seen() do.
-SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels);
+SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels, bool sketched = false);
 
 /// By what roads are looked for in a frame.
 struct Detection {
@@ -58,6 +58,7 @@ struct Detection {
   double cell_m;
   std::stop_token stop = {};  ///< ends it with Interrupted
   std::uint64_t seed = 1;
+  bool sketched = false;  ///< for Features::sketch, which takes milliseconds
 };
 
 /// Throws what detect_features() does.

@@ -145,8 +145,9 @@ http::Response take_step(const Service& service, const http::Request& request, P
         step.content.fields, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
     const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
-    api::Features features =
-        api::features_of(step.content, {*detector, map->view.cell_m, limit.token()}, service.limits);
+    api::Features features = api::features_of(
+        step.content, {.detector = *detector, .cell_m = map->view.cell_m, .stop = limit.token(), .sketched = true},
+        service.limits);
     step.sent.input.picture = picture_of(step.content, features);
     step.sent.input.features = std::move(features.map);
     step.sent.detector = std::move(features.detector);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <functional>
 #include <random>
 
 #include "core/grid/resample.hpp"
@@ -252,50 +253,48 @@ TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {
   EXPECT_NE(seeing.measurement, Measurement::kRepeated);
 }
 
-TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsAttitudeIsToldAnew) {
-  const Tracker tracker(view_, settings());
-  Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged());
-  StepInput last = flight.step();
-  last.picture = of_bytes(17);
-  advance(tracker, last);
-  std::mt19937_64 random(7);
-  const GridPose stopped = flight.pose();
-  for (int i = 0; i < 15; ++i) {
-    StepInput step = flight.step(false);
-    const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
-    step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight.noise, random);
-    step.picture = of_bytes(17);
-    const TrackEstimate estimate = advance(tracker, step);
-    EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
-    EXPECT_FALSE(estimate.converged()) << "step " << i;
-    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
-    EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
+/// Whose camera has stopped, and whose attitude is told anew with each picture.
+class TrackOfAStoppedCamera : public Track {
+ protected:
+  /// Flies until it claims a place, and 15 steps on after the camera has stopped. `picture`: what is sent from then on.
+  void fly_on(const std::function<SentPicture()>& picture, const Look& look) {
+    ASSERT_TRUE(fly(tracker_, flight_, 10).converged());
+    StepInput last = flight_.step();
+    last.picture = picture();
+    advance(tracker_, last);
+    std::mt19937_64 random(7);
+    const GridPose stopped = flight_.pose();
+    for (int i = 0; i < 15; ++i) {
+      StepInput step = flight_.step(false);
+      const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
+      step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight_.noise, random);
+      step.picture = picture();
+      const TrackEstimate estimate = advance(tracker_, step);
+      look(i, estimate);
+      EXPECT_LT(error_m(estimate, flight_.pose()), 25.0) << "step " << i;
+      EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
+    }
   }
+
+  const Tracker tracker_{view_, settings()};
+  Flight flight_{map_, start_, 4};
+};
+
+TEST_F(TrackOfAStoppedCamera, FollowsItsOdometry) {
+  fly_on([] { return of_bytes(17); },
+         [](int i, const TrackEstimate& estimate) {
+           EXPECT_EQ(estimate.measurement, Measurement::kRepeated) << "step " << i;
+           EXPECT_FALSE(estimate.converged()) << "step " << i;
+         });
 }
 
-TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStoppedThoughItsPicturesAreEncodedAnewToo) {
-  const Tracker tracker(view_, settings());
-  Flight flight(map_, start_, 4);
-  ASSERT_TRUE(fly(tracker, flight, 10).converged());
-  StepInput last = flight.step();
-  const PictureSketch sketch = random_sketch(1);
-  last.picture = encoded_anew(sketch);
-  advance(tracker, last);
-  std::mt19937_64 random(7);
-  const GridPose stopped = flight.pose();
-  for (int i = 0; i < 15; ++i) {
-    StepInput step = flight.step(false);
-    const BodyOffset leant{uniform(random, -9.0, 9.0), uniform(random, -9.0, 9.0), {}};
-    step.features = testing::observed_at(map_, moved(stopped, leant), 128, 128, 2.0, flight.noise, random);
-    step.picture = encoded_anew(sketch);
-    const TrackEstimate estimate = advance(tracker, step);
-    EXPECT_EQ(estimate.measurement, i == 0 ? Measurement::kUseless : Measurement::kRepeated) << "step " << i;
-    EXPECT_EQ(estimate.converged(), i == 0) << "step " << i;
-    EXPECT_LT(error_m(estimate, flight.pose()), 25.0) << "step " << i;
-    EXPECT_FALSE(estimate.odometry_is_wrong) << "step " << i;
-  }
-  EXPECT_TRUE(fly(tracker, flight, 5).converged());
+TEST_F(TrackOfAStoppedCamera, FollowsItsOdometryThoughPicturesAreEncodedAnewToo) {
+  fly_on([] { return encoded_anew(random_sketch(1)); },
+         [](int i, const TrackEstimate& estimate) {
+           EXPECT_EQ(estimate.measurement, i == 0 ? Measurement::kUseless : Measurement::kRepeated) << "step " << i;
+           EXPECT_EQ(estimate.converged(), i == 0) << "step " << i;
+         });
+  EXPECT_TRUE(fly(tracker_, flight_, 5).converged());
 }
 
 TEST_F(Track, ClaimsNoPlaceThatAMovementCountedTwiceHasLedTo) {

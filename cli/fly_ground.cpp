@@ -10,6 +10,7 @@
 #include "cli/fly/area.hpp"
 #include "cli/fly/pilot.hpp"
 #include "cli/map_notes.hpp"
+#include "cli/route_input.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "core/units/index_range.hpp"
@@ -89,8 +90,12 @@ std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options
                                                        const UtmZone& zone) {
   const fly::Handling handling = options.plan.handling;
   if (options.course == "random") return [=] { return fly::make_random_pilot(box, handling); };
-  const auto points =
-      options.course == "survey" ? fly::survey_lanes(box, options.lane_m) : fly::read_waypoints(options.course, zone);
+  std::vector<GridPoint> points;
+  if (options.course == "survey") {
+    points = fly::survey_lanes(box, options.lane_m);
+  } else {
+    for (const LatLon place : route_with_notes(options.course)) points.push_back(zone.project(place));
+  }
   return [=] { return fly::make_waypoint_pilot(points, handling); };
 }
 

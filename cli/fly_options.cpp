@@ -88,7 +88,8 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return command.add_option(name, value, what)->capture_default_str()->group(kGroup);
   };
-  add("--course", o.course, "random, survey, or a GeoJSON file of waypoints")->type_name("COURSE");
+  add("--course", o.course, "random, survey, or a file: a plan of QGroundControl, waypoints (QGC WPL) or GeoJSON")
+      ->type_name("COURSE");
   add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(positive());
   add("--area-m", o.area_m,
       "Only the square of this side in the middle of the map, with --server as the bbox where tracks begin; 0 = all")

@@ -2,12 +2,17 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
+#include "cli/output_file.hpp"
+#include "cli/route_input.hpp"
+#include "cli/route_report.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "core/locate/map_survey.hpp"
@@ -21,6 +26,9 @@ struct LocalizabilityArguments {
   std::string map;
   std::string calibration;
   SurveyOptions survey;
+  std::string route;
+  std::optional<double> every_m;  ///< default: half a footprint
+  std::string geojson_file;
   bool as_json = false;
 };
 
@@ -28,15 +36,17 @@ double share(const MapSurvey& survey, std::int64_t places) {
   return survey.places() > 0 ? static_cast<double>(places) / static_cast<double>(survey.places()) : 0.0;
 }
 
+nlohmann::json asked_json(const MapView& map, const LocalizabilityQuery& query) {
+  return {{"map", api::to_json(map.id)}, {"made_by", api::made_by()}, {"footprint_m", query.footprint_m}};
+}
+
 void print_json(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
-  const nlohmann::json answer{{"map", api::to_json(map.id)},
-                              {"made_by", api::made_by()},
-                              {"footprint_m", options.query.footprint_m},
-                              {"places", found.places()},
-                              {"ground_km2", found.ground_m2 / 1e6},
-                              {"distinct", share(found, found.distinct)},
-                              {"sparse", share(found, found.sparse)},
-                              {"bare", share(found, found.bare)}};
+  nlohmann::json answer = asked_json(map, options.query);
+  answer.update({{"places", found.places()},
+                 {"ground_km2", found.ground_m2 / 1e6},
+                 {"distinct", share(found, found.distinct)},
+                 {"sparse", share(found, found.sparse)},
+                 {"bare", share(found, found.bare)}});
   fmt::print("{}\n", json_text(answer, 2));
 }
 
@@ -60,29 +70,61 @@ void print_text(const MapView& map, const SurveyOptions& options, const MapSurve
   line("bare", found.bare, "it shows hardly any road: no fix, and a track has odometry alone");
 }
 
+void survey_map(const LocalizabilityArguments& arguments, const MapView& map, SurveyOptions options) {
+  MapSurvey found;
+  {
+    Progress progress("searching", "places");
+    options.progress = progress.updates();
+    found = survey(map, options);
+  }
+  arguments.as_json ? print_json(map, options, found) : print_text(map, options, found);
+}
+
+RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
+  const std::vector<LatLon> route = route_with_notes(arguments.route);
+  Progress progress("searching", "places");
+  return survey_route(map, route,
+                      {.query = options.query,
+                       .every_m = arguments.every_m.value_or(0.5 * options.query.footprint_m),
+                       .max_places = options.max_places,
+                       .threads = options.threads,
+                       .progress = progress.updates()});
+}
+
+void survey_along_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
+  require_apart({arguments.geojson_file}, {arguments.map, arguments.route});
+  require_writable({arguments.geojson_file});
+  const RouteSurvey found = surveyed_route(arguments, map, options);
+  std::FILE* out = printed_beside({arguments.geojson_file});
+  if (arguments.as_json) {
+    nlohmann::json answer = asked_json(map, options.query);
+    answer.update(route_json(found));
+    fmt::print(out, "{}\n", json_text(answer, 2));
+  } else {
+    fmt::print(out, "{}", route_text(found, arguments.route, options.query.footprint_m));
+  }
+  if (!arguments.geojson_file.empty()) write_file(arguments.geojson_file, json_text(route_geojson(found)));
+}
+
 void run_localizability(const LocalizabilityArguments& arguments) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // places search the ground of their neighbours
   const MapView view = view_with_notes(arguments.map, kSearchCacheBytes);
   SurveyOptions options = arguments.survey;
   if (!arguments.calibration.empty()) options.query.fix.calibration = read_calibration(arguments.calibration);
   options.query.fix.search.deadline = Deadline(stop_on_signals());
-  MapSurvey found;
-  {
-    Progress progress("searching", "places");
-    options.progress = progress.updates();
-    found = survey(view, options);
-  }
-  arguments.as_json ? print_json(view, options, found) : print_text(view, options, found);
+  arguments.route.empty() ? survey_map(arguments, view, options) : survey_along_route(arguments, view, options);
 }
 
 }  // namespace
 
 void add_localizability_command(CLI::App& app) {
-  auto* command = app.add_subcommand("localizability", "Says over how much of a map's ground a frame gives a fix");
+  auto* command =
+      app.add_subcommand("localizability", "Says over how much of a map's ground, or of a route, a frame gives a fix");
   command->footer(
       "From the map alone: an upper bound of what frames give after a disaster. The service shows where that ground "
       "is, on its page.\n"
-      "Example: roadfix localizability town.gpkg --footprint-m 400");
+      "Examples: roadfix localizability town.gpkg --footprint-m 400\n"
+      "          roadfix localizability town.gpkg --footprint-m 400 --route mission.plan --geojson route.geojson");
   const auto a = std::make_shared<LocalizabilityArguments>();
   command->add_option("map", a->map, "Map file (GeoPackage)")->required();
   command
@@ -95,6 +137,15 @@ void add_localizability_command(CLI::App& app) {
                    "Ask at so many places at most, evenly spread: each takes about a second of one core")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));
+  CLI::Option* route = command->add_option(
+      "--route", a->route,
+      "Ask along this route only: a plan of QGroundControl, a list of waypoints (QGC WPL), or GeoJSON with a line or "
+      "points");
+  command->add_option("--every-m", a->every_m, "Metres of the route for each place; default: half a footprint")
+      ->needs(route)
+      ->check(positive());
+  command->add_option("--geojson", a->geojson_file, "Write the route, piece by piece, with what was found")
+      ->needs(route);
   add_calibration_option(*command, a->calibration);
   add_threads_option(*command, "--threads", a->survey.threads, "Places asked at a time");
   command->add_flag("--json", a->as_json, "Answer in JSON");

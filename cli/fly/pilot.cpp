@@ -1,15 +1,10 @@
 #include "cli/fly/pilot.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
-#include <string>
 #include <utility>
 
 #include "core/units/error.hpp"
-#include "core/units/file.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -95,39 +90,6 @@ std::vector<GridPoint> survey_lanes(const GridBox& box, double spacing_m) {
     points.push_back({from, north});
     points.push_back({to, north});
     eastward = !eastward;
-  }
-  return points;
-}
-
-std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const UtmZone& zone) {
-  const std::string text = read_named_file(file);
-  std::vector<GridPoint> points;
-  const auto add = [&](const nlohmann::json& place) {
-    points.push_back(zone.project({place.at(1).get<double>(), place.at(0).get<double>()}));
-  };
-  try {
-    const nlohmann::json document = nlohmann::json::parse(text);
-    for (const auto& feature : document.at("features")) {
-      const auto& geometry = feature.at("geometry");
-      if (geometry.at("type") == "Point") add(geometry.at("coordinates"));
-      const bool is_cut = geometry.at("type") == "MultiLineString";  // at 180 degrees
-      if (!is_cut && geometry.at("type") != "LineString") continue;
-      points.clear();
-      for (const auto& part :
-           is_cut ? geometry.at("coordinates") : nlohmann::json::array({geometry.at("coordinates")})) {
-        for (const auto& place : part) add(place);
-      }
-      break;
-    }
-  } catch (const nlohmann::json::exception& problem) {
-    throw InvalidInput(
-        "waypoints-unreadable",
-        fmt::format("{} is not a GeoJSON FeatureCollection of points or a line: {}", file.string(), problem.what()));
-  }
-  if (points.size() < 2) {
-    throw InvalidInput(
-        "waypoints-unreadable",
-        fmt::format("{} holds fewer than two points; draw a line, or points in their order", file.string()));
   }
   return points;
 }

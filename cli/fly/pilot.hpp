@@ -1,13 +1,11 @@
 // Where the vehicle steers next.
 #pragma once
 
-#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "cli/evaluation/random.hpp"
-#include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
 
 namespace roadfix::fly {
@@ -35,9 +33,5 @@ std::unique_ptr<Pilot> make_waypoint_pilot(std::vector<GridPoint> points, const 
 
 /// Lanes from west to east and back, `spacing_m` apart, from the south-western corner.
 std::vector<GridPoint> survey_lanes(const GridBox& box, double spacing_m);
-
-/// Points of the first LineString or MultiLineString of a GeoJSON file, or all its Points in their order. Throws
-/// NotFound, InvalidInput "waypoints-unreadable".
-std::vector<GridPoint> read_waypoints(const std::filesystem::path& file, const UtmZone& zone);
 
 }  // namespace roadfix::fly

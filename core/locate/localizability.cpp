@@ -34,6 +34,12 @@ bool is_at(const FixMode& mode, GridPoint place, const UtmZone& zone, double cel
 
 }  // namespace
 
+PlaceKind kind_of(const Localizability& place) {
+  if (place.observed_share < kMinObservedShare) return PlaceKind::kUnknown;
+  if (place.status == FixStatus::kFix) return PlaceKind::kDistinct;
+  return place.bare ? PlaceKind::kBare : PlaceKind::kSparse;
+}
+
 Localizability localizability(const MapView& map, const LocalizabilityQuery& query) {
   if (!(query.footprint_m >= kSmallestFootprintM && query.footprint_m <= kLargestFootprintM)) {
     throw InvalidInput("parameter-out-of-range",

@@ -34,6 +34,16 @@ struct Localizability {
   std::vector<FixMode> alike;   ///< other places that fit, best first
 };
 
+/// What a frame of a place would be worth.
+enum class PlaceKind {
+  kDistinct,  ///< it would give a fix
+  kSparse,    ///< it shows roads, but they fit elsewhere, too, or are too few to be sure
+  kBare,      ///< it shows less road than a single one across it
+  kUnknown,   ///< the map has observed too little of the footprint to say
+};
+
+PlaceKind kind_of(const Localizability& place);
+
 /// Cuts the footprint out of the map, north up, makes it as bad as the quality says (always with the same generator),
 /// and looks for it around the place at every heading. Throws what locate() throws, and InvalidInput
 /// "parameter-out-of-range".

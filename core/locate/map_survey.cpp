@@ -22,13 +22,18 @@ std::vector<GridPoint> thinned(const std::vector<GridPoint>& places, std::int64_
 }
 
 void count(MapSurvey& survey, const Localizability& place) {
-  if (place.observed_share < kMinObservedShare) return;  // overviews show ground with gaps as whole
-  if (place.status == FixStatus::kFix) {
-    ++survey.distinct;
-  } else if (place.bare) {
-    ++survey.bare;
-  } else {
-    ++survey.sparse;
+  switch (kind_of(place)) {
+    case PlaceKind::kDistinct:
+      ++survey.distinct;
+      return;
+    case PlaceKind::kSparse:
+      ++survey.sparse;
+      return;
+    case PlaceKind::kBare:
+      ++survey.bare;
+      return;
+    case PlaceKind::kUnknown:
+      return;  // overviews show ground with gaps as whole
   }
 }
 

@@ -75,6 +75,44 @@ TEST_F(LocalizeCommands, LocalizabilitySaysHowMuchOfTheGroundGivesAFix) {
   EXPECT_EQ(roadfix("localizability " + map.string()).code, 2) << "of which footprint?";
 }
 
+TEST_F(LocalizeCommands, LocalizabilityOfARouteSaysWhereAFlightHasFixesAndHowLongItGoesWithout) {
+  // The town, 1000 x 900 m, from west to east, and as far again beyond the map.
+  const auto waypoint = [&](int number, double east_m) {
+    const LatLon at = zone.unproject({600'200.0 + east_m, 6'399'450.0});
+    return fmt::format("{} 0 3 16 0 0 0 0 {:.9f} {:.9f} 300 1\n", number, at.lat_deg, at.lon_deg);
+  };
+  const std::filesystem::path mission = folder / "mission.waypoints";
+  std::ofstream(mission) << "QGC WPL 110\n" << waypoint(0, 0.0) << waypoint(1, 2000.0);
+  const std::string ask = "localizability " + map.string() + " --footprint-m 400 --route " + mission.string();
+
+  const ProgramResult told = roadfix(ask);
+  ASSERT_EQ(told.code, 0) << told.err;
+  EXPECT_THAT(told.out,
+              HasSubstr("mission.waypoints: 2.0 km, for frames that show 400 m of ground; asked every 200 m"));
+  EXPECT_THAT(told.out, HasSubstr("longest without a fix: 1.0 km, from km 1.0"));
+
+  const std::filesystem::path pieces = folder / "pieces.geojson";
+  const ProgramResult result = roadfix(ask + " --every-m 500 --json --geojson " + pieces.string());
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto answer = nlohmann::json::parse(result.out);
+  EXPECT_EQ(answer["map"]["name"], "town");
+  EXPECT_EQ(answer["places"], 4);
+  EXPECT_NEAR(answer["length_m"].get<double>(), 2000.0, 0.1);
+  EXPECT_EQ(answer["distinct"], 0.5);
+  EXPECT_EQ(answer["unknown"], 0.5);
+  EXPECT_EQ(answer["first_fix_m"], 0.0);
+  EXPECT_NEAR(answer["longest_without_fix"]["from_m"].get<double>(), 1000.0, 0.1);
+  const auto features = nlohmann::json::parse(std::ifstream(pieces))["features"];
+  ASSERT_EQ(features.size(), 4U);
+  EXPECT_EQ(features[0]["geometry"]["type"], "LineString");
+  EXPECT_EQ(features[1]["properties"]["place"], "distinct");
+  EXPECT_EQ(features[2]["properties"]["place"], "unknown");
+
+  EXPECT_THAT(roadfix(ask + " --geojson " + mission.string()).err, HasSubstr("[target-is-source]"));
+  EXPECT_EQ(roadfix("localizability " + map.string() + " --footprint-m 400 --every-m 100").code, 2)
+      << "of which route?";
+}
+
 TEST_F(LocalizeCommands, FixSaysThatAnotherDetectorThanReadsFramesFoundTheRoads) {
   const std::string fix = "fix --detector tree " + map.string() + " " + window.string();
   save(encode_feature_map(what_is_seen(truth, 160), "neural roadnet-8 fnv1a64=1 gsd_m=1 orientations=1"), window);

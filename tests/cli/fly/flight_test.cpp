@@ -206,29 +206,6 @@ TEST(Pilots, SurveyLanesCoverTheBoxBackAndForth) {
   EXPECT_EQ(lanes[4].north_m, kBox.min.north_m + 800.0);
 }
 
-TEST(Pilots, WaypointsComeFromALineOfGeoJsonAndBadFilesAreRefused) {
-  const testing::TemporaryFolder folder;
-  const UtmZone zone = UtmZone::from_epsg(32634).value();
-  const auto read = [&](const std::string& text) {
-    std::ofstream(folder / "w.geojson") << text;
-    return read_waypoints(folder / "w.geojson", zone);
-  };
-  const auto points =
-      read(R"({"features":[{"geometry":{"type":"LineString","coordinates":[[21,57.5],[21.01,57.5]]}}]})");
-  ASSERT_EQ(points.size(), 2u);
-  EXPECT_NEAR(points[0].east_m, 500'000.0, 1e-3);
-  EXPECT_EQ(
-      read(
-          R"({"features":[{"geometry":{"type":"MultiLineString","coordinates":[[[21,57.5],[21.01,57.5]],[[21.02,57.5]]]}}]})")
-          .size(),
-      3u);
-  EXPECT_EQ(code_of([&] { read("not json"); }), "waypoints-unreadable");
-  EXPECT_EQ(code_of([&] { read(R"({"features":[]})"); }), "waypoints-unreadable");
-  EXPECT_EQ(code_of([&] { read(R"({"features":[{"geometry":{"type":"Point","coordinates":[21]}}]})"); }),
-            "waypoints-unreadable");
-  EXPECT_EQ(code_of([&] { read_waypoints(folder / "none", zone); }), "file-not-found");
-}
-
 TEST(Area, KeepsTheMiddleOfAMapAndLeavesTheRestUnobserved) {
   const RoadGrid town = testing::street_map(3, {2.0, {300'100, -3'200'050}, 200, 200});
   const MapView part = middle_of(testing::view_of(town), 100.0);

@@ -5,6 +5,7 @@
 #include <stop_token>
 
 #include "core/grid/resample.hpp"
+#include "tests/core/locate/town_and_fields.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/map_view.hpp"
 #include "tests/support/street_map.hpp"
@@ -12,15 +13,8 @@
 namespace roadfix {
 namespace {
 
+using testing::town_fields_and_unknown_ground;
 using testing::view_of;
-
-/// Winding streets, a third of fields, and a third that nobody has looked at; the thirds are 400 m wide.
-MapView town_fields_and_unknown_ground() {
-  RoadGrid ground = testing::street_map(22, {2.0, {300'000, -3'200'000}, 600, 400});
-  paste(CellArray(200, 400, kNoRoad), ground.cells, 200, 0);
-  paste(CellArray(200, 400), ground.cells, 400, 0);
-  return view_of(ground);
-}
 
 SurveyOptions options() {
   SurveyOptions options;

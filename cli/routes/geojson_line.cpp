@@ -1,0 +1,50 @@
+#include "cli/routes/geojson_line.hpp"
+
+#include "cli/routes/route_json.hpp"
+
+namespace roadfix::routes {
+namespace {
+
+LatLon position(const JsonField& field) {
+  const std::vector<JsonField> numbers = field.elements();
+  if (numbers.size() < 2) field.refuse("has to be a longitude and a latitude");
+  return {latitude_of(numbers[1]), longitude_of(numbers[0])};
+}
+
+std::vector<JsonField> geometries_of(const JsonField& document) {
+  if (document.has("features")) {
+    std::vector<JsonField> geometries;
+    for (const JsonField& feature : document.at("features").elements()) {
+      const JsonField geometry = feature.at("geometry");
+      if (!geometry.is_null()) geometries.push_back(geometry);
+    }
+    return geometries;
+  }
+  return {document.has("geometry") ? document.at("geometry") : document};
+}
+
+void add_line(const JsonField& positions, Route& route) {
+  for (const JsonField& place : positions.elements()) route.places.push_back(position(place));
+}
+
+}  // namespace
+
+Route parse_geojson_line(const JsonField& document) {
+  Route points;
+  for (const JsonField& geometry : geometries_of(document)) {
+    const std::string type = geometry.at("type").text();
+    Route line;
+    if (type == "LineString") {
+      add_line(geometry.at("coordinates"), line);
+      return line;
+    }
+    if (type == "MultiLineString") {
+      for (const JsonField& part : geometry.at("coordinates").elements()) add_line(part, line);
+      return line;
+    }
+    if (type == "Point") points.places.push_back(position(geometry.at("coordinates")));
+  }
+  return points;
+}
+
+}  // namespace roadfix::routes

@@ -1,0 +1,13 @@
+// A line or points of GeoJSON (RFC 7946), as programs for maps draw them.
+#pragma once
+
+#include "cli/routes/route.hpp"
+#include "core/units/json_file.hpp"
+
+namespace roadfix::routes {
+
+/// The first LineString or MultiLineString (one that is cut at 180 degrees), or all Points in their order, of a
+/// FeatureCollection, a Feature or a geometry. Throws InvalidInput "waypoints-unreadable".
+Route parse_geojson_line(const JsonField& document);
+
+}  // namespace roadfix::routes

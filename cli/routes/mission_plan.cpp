@@ -1,0 +1,98 @@
+#include "cli/routes/mission_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "cli/routes/mav_command.hpp"
+#include "cli/routes/route_json.hpp"
+
+namespace roadfix::routes {
+namespace {
+
+constexpr double kMostCommands = 65'535.0;
+
+LatLon place_in(const std::vector<JsonField>& numbers, std::size_t first) {
+  return {latitude_of(numbers[first]), longitude_of(numbers[first + 1])};
+}
+
+/// Latitude, longitude and an altitude.
+LatLon coordinate(const JsonField& field) {
+  const std::vector<JsonField> numbers = field.elements();
+  if (numbers.size() < 2) field.refuse("has to be a latitude and a longitude");
+  return place_in(numbers, 0);
+}
+
+/// The commands of which surveys and corridors are made.
+std::vector<JsonField> transects_of(const JsonField& item) {
+  if (!item.has("TransectStyleComplexItem")) return {};
+  const JsonField transects = item.at("TransectStyleComplexItem");
+  return transects.has("Items") ? transects.at("Items").elements() : std::vector<JsonField>{};
+}
+
+class PlanReader {
+ public:
+  explicit PlanReader(const JsonField& mission) : mission_(mission) {
+    if (mission.has("plannedHomePosition")) home_ = coordinate(mission.at("plannedHomePosition"));
+    if (home_ && !is_told(*home_)) home_.reset();
+    if (home_) route_.places.push_back(*home_);
+  }
+
+  Route read() && {
+    int number = 0;
+    for (const JsonField& item : mission_.at("items").elements()) add_item(item, ++number);
+    return std::move(route_);
+  }
+
+ private:
+  void add_item(const JsonField& item, int number) {
+    if (item.at("type").text() == "SimpleItem") {
+      add_command(item);
+    } else {
+      add_pattern(item, number);
+    }
+  }
+
+  void add_command(const JsonField& item) {
+    const std::int64_t command = item.at("command").whole_number(0.0, kMostCommands);
+    if (command == kReturnToLaunch && home_) route_.places.push_back(*home_);
+    if (!leads_somewhere(command)) return;
+    constexpr std::size_t kLatitude = 4;
+    const JsonField params = item.at("params");
+    const std::vector<JsonField> numbers = params.elements();
+    if (numbers.size() < kLatitude + 2) params.refuse("has to hold seven numbers");
+    if (numbers[kLatitude].is_null() || numbers[kLatitude + 1].is_null()) return;  // where it is
+    const LatLon place = place_in(numbers, kLatitude);
+    if (is_told(place)) route_.places.push_back(place);
+  }
+
+  void add_pattern(const JsonField& item, int number) {
+    const std::string kind = item.at("complexItemType").text();
+    const std::vector<JsonField> transects = transects_of(item);
+    if (!transects.empty()) {
+      for (const JsonField& part : transects) add_command(part);
+    } else if (item.has("landCoordinate")) {
+      if (item.has("landingApproachCoordinate")) {
+        route_.places.push_back(coordinate(item.at("landingApproachCoordinate")));
+      }
+      route_.places.push_back(coordinate(item.at("landCoordinate")));
+    } else {
+      route_.left_out.push_back(fmt::format("item {}, a {}: the plan does not say which way it leads", number, kind));
+    }
+  }
+
+  const JsonField mission_;
+  std::optional<LatLon> home_;
+  Route route_;
+};
+
+}  // namespace
+
+bool is_mission_plan(const JsonField& document) {
+  return document.is_object() && document.has("mission") && document.at("mission").is_object();
+}
+
+Route parse_mission_plan(const JsonField& document) { return PlanReader(document.at("mission")).read(); }
+
+}  // namespace roadfix::routes

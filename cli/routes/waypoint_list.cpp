@@ -1,0 +1,85 @@
+#include "cli/routes/waypoint_list.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <optional>
+
+#include "cli/routes/mav_command.hpp"
+#include "cli/routes/route_json.hpp"
+#include "core/units/error.hpp"
+#include "core/units/text.hpp"
+
+namespace roadfix::routes {
+namespace {
+
+constexpr std::string_view kBegin = "QGC WPL";
+constexpr std::size_t kNumbers = 12;
+constexpr std::size_t kCommand = 3;
+constexpr std::size_t kLatitude = 8;
+
+/// The numbers of a line, between tabs or blanks, however many.
+std::vector<double> numbers_of(std::string_view line, std::size_t line_number) {
+  std::vector<double> numbers;
+  while (!(line = trimmed(line)).empty()) {
+    const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
+    const auto number = as_number<double>(line.substr(0, end));
+    if (!number || !std::isfinite(*number)) {
+      throw InvalidInput(kRouteUnreadable, fmt::format("line {}: '{}' is no number: a waypoint has twelve", line_number,
+                                                       line.substr(0, end)));
+    }
+    numbers.push_back(*number);
+    line.remove_prefix(end);
+  }
+  return numbers;
+}
+
+LatLon place_of(const std::vector<double>& numbers, std::size_t line_number) {
+  const LatLon place{numbers[kLatitude], numbers[kLatitude + 1]};
+  if (std::abs(place.lat_deg) <= 90.0 && std::abs(place.lon_deg) <= 180.0) return place;
+  throw InvalidInput(kRouteUnreadable,
+                     fmt::format("line {}: latitude {} and longitude {} are no place: the ninth and tenth number are "
+                                 "degrees, up to 90 and 180",
+                                 line_number, place.lat_deg, place.lon_deg));
+}
+
+class ListReader {
+ public:
+  void add_line(std::string_view line, std::size_t line_number) {
+    const std::vector<double> numbers = numbers_of(line, line_number);
+    if (numbers.empty()) return;
+    if (numbers.size() < kNumbers) {
+      throw InvalidInput(kRouteUnreadable,
+                         fmt::format("line {} has {} numbers: a waypoint has twelve", line_number, numbers.size()));
+    }
+    const auto command = std::llround(std::clamp(numbers[kCommand], 0.0, 65'535.0));
+    if (command == kReturnToLaunch && home_) route_.places.push_back(*home_);
+    if (!leads_somewhere(command)) return;
+    const LatLon place = place_of(numbers, line_number);
+    if (!is_told(place)) return;
+    if (!home_) home_ = place;
+    route_.places.push_back(place);
+  }
+
+  const Route& route() const { return route_; }
+
+ private:
+  std::optional<LatLon> home_;
+  Route route_;
+};
+
+}  // namespace
+
+bool is_waypoint_list(std::string_view text) { return text.starts_with(kBegin); }
+
+Route parse_waypoint_list(std::string_view text) {
+  ListReader reader;
+  std::size_t line_number = 0;
+  for (std::string_view line : split(text, '\n')) {
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    if (++line_number > 1) reader.add_line(line, line_number);
+  }
+  return reader.route();
+}
+
+}  // namespace roadfix::routes

@@ -1,0 +1,47 @@
+// Before the flight: where along a route does a frame tell its place, and how long does the flight go without?
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "core/locate/localizability.hpp"
+#include "core/units/index_range.hpp"
+#include "core/units/progress.hpp"
+
+namespace roadfix {
+
+struct RouteSurveyOptions {
+  /// Of each place; its position is not read.
+  LocalizabilityQuery query;
+  double every_m = 200.0;          ///< about the length of the pieces of the route; above 0
+  std::int64_t max_places = 1000;  ///< longer pieces where it would be more; each takes about a second of one core
+  int threads = 1;
+  OnProgress progress{};  ///< in places
+};
+
+/// A stretch of the route, all of it straight between the places on the way; what holds in its middle counts for it.
+struct RoutePiece {
+  std::vector<LatLon> line;  ///< two places at least
+  PlaceKind kind = PlaceKind::kUnknown;
+  double probability = 0.0;  ///< that a frame would be placed rightly
+};
+
+struct RouteSurvey {
+  double length_m = 0.0;
+  std::vector<RoutePiece> pieces;  ///< of equal lengths, in the order of the flight
+
+  double piece_m() const { return length_m / static_cast<double>(pieces.size()); }
+  std::int64_t count(PlaceKind kind) const;
+  /// Until a frame gives a fix; nullopt if none does.
+  std::optional<double> first_fix_m() const;
+  /// The most pieces in a row none of which is distinct; the first of equal ones. Empty where all are.
+  IndexRange longest_without_fix() const;
+};
+
+/// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, and
+/// InvalidInput "route-outside-map" where no piece lies within the box of the map, "route-without-length".
+RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options);
+
+}  // namespace roadfix

@@ -1,0 +1,138 @@
+#include "cli/routes/route.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <string>
+
+#include "tests/support/code_of.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace roadfix::routes {
+namespace {
+
+using ::testing::AllOf;
+using testing::code_of;
+using ::testing::DoubleEq;
+using ::testing::ElementsAre;
+using ::testing::Field;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::message_of;
+using ::testing::SizeIs;
+
+auto place(double lat_deg, double lon_deg) {
+  return AllOf(Field(&LatLon::lat_deg, DoubleEq(lat_deg)), Field(&LatLon::lon_deg, DoubleEq(lon_deg)));
+}
+
+std::string simple_item(int command, const std::string& lat, const std::string& lon) {
+  return R"({"type":"SimpleItem","autoContinue":true,"frame":3,"doJumpId":1,"command":)" + std::to_string(command) +
+         R"(,"params":[0,0,0,null,)" + lat + "," + lon + R"(,50]})";
+}
+
+std::string plan(const std::string& items, const std::string& home = "[47.39,8.54,488]") {
+  return R"({"fileType":"Plan","version":1,"groundStation":"QGroundControl","geoFence":{},"rallyPoints":{},"mission":{)"
+         R"("version":2,"plannedHomePosition":)" +
+         home + R"(,"items":[)" + items + "]}}";
+}
+
+TEST(Routes, OfAPlanLeadFromTheHomeOverWhatIsFlownToAndBackWhereItReturns) {
+  const std::string items = simple_item(22, "47.391", "8.541") + "," +  // take-off
+                            simple_item(206, "47.0", "8.0") + "," +     // camera trigger
+                            simple_item(16, "47.392", "8.542") + "," +  // waypoint
+                            simple_item(195, "46.0", "7.0") + "," +     // a region of interest is looked at
+                            simple_item(82, "47.393", "8.543") + "," +  // spline
+                            simple_item(17, "null", "null") + "," +     // loiters where it is
+                            simple_item(21, "0", "0") + "," +           // lands where it is
+                            simple_item(20, "0", "0");                  // return to launch
+  const Route route = parse_route(plan(items));
+  EXPECT_THAT(route.places, ElementsAre(place(47.39, 8.54), place(47.391, 8.541), place(47.392, 8.542),
+                                        place(47.393, 8.543), place(47.39, 8.54)));
+  EXPECT_THAT(route.left_out, IsEmpty());
+}
+
+TEST(Routes, OfAPlanWithoutAHomeBeginAtItsFirstPlace) {
+  const std::string items =
+      simple_item(16, "47.1", "8.1") + "," + simple_item(16, "47.2", "8.2") + "," + simple_item(20, "0", "0");
+  EXPECT_THAT(parse_route(plan(items, "[0,0,0]")).places, ElementsAre(place(47.1, 8.1), place(47.2, 8.2)));
+}
+
+TEST(Routes, OfAPlanFollowTheTransectsOfSurveysAndTheApproachOfLandings) {
+  const std::string survey = R"({"type":"ComplexItem","complexItemType":"survey","polygon":[[47,8],[47,9],[48,9]],)"
+                             R"("TransectStyleComplexItem":{"Items":[)" +
+                             simple_item(16, "47.1", "8.1") + "," + simple_item(16, "47.1", "8.2") + R"(]}})";
+  const std::string landing =
+      R"({"type":"ComplexItem","complexItemType":"fwLandingPattern","landingApproachCoordinate":[47.3,8.3,40],)"
+      R"("landCoordinate":[47.4,8.4,0]})";
+  EXPECT_THAT(parse_route(plan(survey + "," + landing)).places,
+              ElementsAre(place(47.39, 8.54), place(47.1, 8.1), place(47.1, 8.2), place(47.3, 8.3), place(47.4, 8.4)));
+}
+
+TEST(Routes, OfAPlanNameWhatTheyLeaveOut) {
+  const std::string scan = R"({"type":"ComplexItem","complexItemType":"StructureScan","polygon":[[47,8],[47,9]]})";
+  const std::string untouched =
+      R"({"type":"ComplexItem","complexItemType":"survey","TransectStyleComplexItem":{"Items":[]}})";
+  const Route route = parse_route(plan(simple_item(16, "47.1", "8.1") + "," + scan + "," + untouched));
+  EXPECT_THAT(route.places, SizeIs(2));
+  EXPECT_THAT(route.left_out, ElementsAre(HasSubstr("item 2, a StructureScan"), HasSubstr("item 3, a survey")));
+}
+
+// The first lines are those of mavlink.io/en/file_formats.
+TEST(Routes, OfAWaypointListBeginAtItsFirstItemAndEndThereAgainWhereTheyReturn) {
+  const Route route = parse_route(
+      "QGC WPL 110\r\n"
+      "0\t1\t0\t16\t0.149999999999999994\t0\t0\t0\t8.54800000000000004\t47.3759999999999977\t550\t1\r\n"
+      "1\t0\t0\t16\t0.149999999999999994\t0\t0\t0\t8.54900000000000004\t47.3759999999999977\t550\t1\r\n"
+      "2  0  3  178  0 20 0 0  0 0 0  1\r\n"
+      "3\t0\t3\t20\t0\t0\t0\t0\t0\t0\t0\t1\r\n"
+      "\r\n");
+  EXPECT_THAT(route.places, ElementsAre(place(8.548, 47.376), place(8.549, 47.376), place(8.548, 47.376)));
+}
+
+TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
+  const std::string line = R"({"type":"LineString","coordinates":[[21,57.5],[21.01,57.6,300]]})";
+  const std::string point = R"({"type":"Feature","geometry":{"type":"Point","coordinates":[1,2]}})";
+  const auto feature = [](const std::string& geometry) { return R"({"type":"Feature","geometry":)" + geometry + "}"; };
+  const auto collection = [](const std::string& features) {
+    return R"({"type":"FeatureCollection","features":[)" + features + "]}";
+  };
+  const auto drawn = ElementsAre(place(57.5, 21), place(57.6, 21.01));
+  EXPECT_THAT(parse_route(line).places, drawn);
+  EXPECT_THAT(parse_route(feature(line)).places, drawn);
+  EXPECT_THAT(parse_route(collection(point + "," + feature("null") + "," + feature(line))).places, drawn);
+  EXPECT_THAT(parse_route(collection(point + "," + point)).places, ElementsAre(place(2, 1), place(2, 1)));
+  EXPECT_THAT(parse_route("\xEF\xBB\xBF" + feature(R"({"type":"MultiLineString","coordinates":)"
+                                                   R"([[[179,1],[180,1]],[[-180,1],[-179,1]]]})"))
+                  .places,
+              ElementsAre(place(1, 179), place(1, 180), place(1, -180), place(1, -179)));
+}
+
+TEST(Routes, ThatCannotBeReadAreRefusedWithTheirPlaceInTheFile) {
+  const auto complaint = [](const std::string& text) {
+    EXPECT_EQ(code_of([&] { parse_route(text); }), "waypoints-unreadable") << text;
+    return message_of([&] { parse_route(text); });
+  };
+  EXPECT_THAT(complaint("not json"), HasSubstr("a plan of QGroundControl"));
+  EXPECT_THAT(complaint("[]"), HasSubstr("must be an object"));
+  EXPECT_THAT(complaint(R"({"features":[]})"), HasSubstr("at least two places"));
+  EXPECT_THAT(complaint(R"({"type":"Point","coordinates":[21]})"), HasSubstr("coordinates"));
+  EXPECT_THAT(complaint(R"({"type":"LineString","coordinates":[[47,121.5],[1,2]]})"),
+              HasSubstr("coordinates[0][1] is 121.5"));
+  EXPECT_THAT(complaint(plan(R"({"type":"SimpleItem","command":16,"params":[1,2]})")),
+              HasSubstr("mission.items[0].params has to hold seven numbers"));
+  EXPECT_THAT(complaint(plan(simple_item(16, "\"47\"", "8"))), HasSubstr("mission.items[0].params[4]"));
+  EXPECT_THAT(complaint(plan("")), HasSubstr("at least two places"));
+  EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 50\n"), HasSubstr("line 2 has 11 numbers"));
+  EXPECT_THAT(complaint("QGC WPL 110\n\n0 1 0 16 0 0 0 0 x 8 50 1\n"), HasSubstr("line 3: 'x' is no number"));
+  EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 97 8 50 1\n"), HasSubstr("line 2: latitude 97"));
+}
+
+TEST(Routes, OfFilesAreRefusedByTheirName) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "mission.plan") << "{}";
+  EXPECT_THAT(message_of([&] { read_route(folder / "mission.plan"); }), HasSubstr("mission.plan: route: "));
+  EXPECT_EQ(code_of([&] { read_route(folder / "none"); }), "file-not-found");
+}
+
+}  // namespace
+}  // namespace roadfix::routes

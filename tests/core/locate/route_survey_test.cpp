@@ -1,0 +1,115 @@
+#include "core/locate/route_survey.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/core/locate/town_and_fields.hpp"
+#include "tests/support/code_of.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::code_of;
+using testing::town_fields_and_unknown_ground;
+
+/// The map's box is 1200 x 800 m, of which the western 800 m are observed.
+constexpr GridPoint kSouthWest{600'000.0, 6'399'200.0};
+
+std::vector<LatLon> route_of(const MapView& map, const std::vector<GridPoint>& from_south_west) {
+  std::vector<LatLon> route;
+  for (const GridPoint point : from_south_west) {
+    route.push_back(map.zone.unproject({kSouthWest.east_m + point.east_m, kSouthWest.north_m + point.north_m}));
+  }
+  return route;
+}
+
+RouteSurveyOptions options() {
+  RouteSurveyOptions options;
+  options.query.footprint_m = 400.0;
+  options.query.radius_m = 500.0;
+  options.every_m = 400.0;
+  return options;
+}
+
+std::vector<PlaceKind> kinds_of(const RouteSurvey& survey) {
+  std::vector<PlaceKind> kinds;
+  for (const RoutePiece& piece : survey.pieces) kinds.push_back(piece.kind);
+  return kinds;
+}
+
+using enum PlaceKind;
+
+TEST(RouteSurvey, TellsWhereAFlightHasFixesAndHowLongItGoesWithoutOne) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions two_at_a_time = options();
+  two_at_a_time.threads = 2;
+  std::int64_t told = 0;
+  two_at_a_time.progress = [&](std::int64_t done, std::int64_t total) {
+    EXPECT_EQ(done, ++told);
+    EXPECT_EQ(total, 6) << "the map has nothing to say of what lies beyond it";
+  };
+  // Eastwards over town, fields and what is not known, out of the map, and back over the fields to the town.
+  const RouteSurvey found =
+      survey_route(map, route_of(map, {{0, 400}, {1600, 400}, {1600, 400}, {0, 400}}), two_at_a_time);
+  EXPECT_EQ(told, 6);
+  EXPECT_NEAR(found.length_m, 3200.0, 0.01);
+  EXPECT_EQ(kinds_of(found), (std::vector{kDistinct, kBare, kUnknown, kUnknown, kUnknown, kUnknown, kBare, kDistinct}));
+  EXPECT_EQ(found.count(kUnknown), 4);
+  EXPECT_GT(found.pieces.front().probability, 0.9);
+  ASSERT_TRUE(found.first_fix_m());
+  EXPECT_DOUBLE_EQ(*found.first_fix_m(), 0.0);
+  EXPECT_EQ(found.longest_without_fix().first, 1);
+  EXPECT_EQ(found.longest_without_fix().end, 7);
+}
+
+TEST(RouteSurvey, PiecesAreOfOneLengthAndFollowTheTurnsOfTheRoute) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions halves = options();
+  halves.every_m = 500.0;
+  const std::vector<LatLon> route = route_of(map, {{100, 100}, {100, 400}, {800, 400}});
+  const RouteSurvey found = survey_route(map, route, halves);
+  ASSERT_EQ(found.pieces.size(), 2U);
+  EXPECT_NEAR(found.piece_m(), 500.0, 0.01);
+  const auto expect_place = [&](LatLon place, double east_m, double north_m) {
+    const GridPoint point = map.zone.project(place);
+    EXPECT_NEAR(point.east_m - kSouthWest.east_m, east_m, 0.01);
+    EXPECT_NEAR(point.north_m - kSouthWest.north_m, north_m, 0.01);
+  };
+  ASSERT_EQ(found.pieces[0].line.size(), 3U);
+  expect_place(found.pieces[0].line[0], 100, 100);
+  expect_place(found.pieces[0].line[1], 100, 400);
+  expect_place(found.pieces[0].line[2], 300, 400);
+  ASSERT_EQ(found.pieces[1].line.size(), 2U);
+  expect_place(found.pieces[1].line[0], 300, 400);
+  expect_place(found.pieces[1].line[1], 800, 400);
+}
+
+TEST(RouteSurvey, AsksAtFewerPlacesThatStandForLongerPiecesWhereItWouldBeTooMany) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions few = options();
+  few.every_m = 1.0;
+  few.max_places = 2;
+  const RouteSurvey found = survey_route(map, route_of(map, {{0, 400}, {800, 400}}), few);
+  EXPECT_EQ(kinds_of(found), (std::vector{kDistinct, kBare}));
+  EXPECT_EQ(found.longest_without_fix().count(), 1);
+}
+
+TEST(RouteSurvey, HasNoFirstFixWhereNoneIsToBeExpected) {
+  const MapView map = town_fields_and_unknown_ground();
+  const RouteSurvey found = survey_route(map, route_of(map, {{500, 400}, {700, 400}}), options());
+  EXPECT_EQ(kinds_of(found), std::vector{kBare});
+  EXPECT_FALSE(found.first_fix_m());
+  EXPECT_EQ(found.longest_without_fix().count(), 1);
+}
+
+TEST(RouteSurvey, RefusesRoutesOfAnotherPlaceAndThoseThatLeadNowhere) {
+  const MapView map = town_fields_and_unknown_ground();
+  const auto code = [&](const std::vector<LatLon>& route) {
+    return code_of([&] { survey_route(map, route, options()); });
+  };
+  EXPECT_EQ(code(route_of(map, {{0, 5000}, {1200, 5000}})), "route-outside-map");
+  EXPECT_EQ(code({{10.0, -120.0}, {10.0, -119.0}}), "route-outside-map") << "where the zone is not defined";
+  EXPECT_EQ(code(route_of(map, {{400, 400}, {400, 400}})), "route-without-length");
+}
+
+}  // namespace
+}  // namespace roadfix

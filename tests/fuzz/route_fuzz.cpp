@@ -1,0 +1,22 @@
+// Plans and routes of ground stations: any bytes are places on the Earth, or InvalidInput.
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string_view>
+
+#include "cli/routes/route.hpp"
+#include "core/units/error.hpp"
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  try {
+    const auto route = roadfix::routes::parse_route({reinterpret_cast<const char*>(data), size});
+    if (route.places.size() < 2) std::abort();
+    for (const roadfix::LatLon& place : route.places) {
+      if (!(std::abs(place.lat_deg) <= 90.0 && std::abs(place.lon_deg) <= 180.0)) std::abort();
+    }
+  } catch (const roadfix::InvalidInput&) {
+    return 0;
+  }
+  return 0;
+}

@@ -18,6 +18,7 @@
 #include "core/locate/map_survey.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/json_parts.hpp"
+#include "server/api/route_json.hpp"
 
 namespace roadfix::cli {
 namespace {
@@ -98,12 +99,12 @@ void survey_along_route(const LocalizabilityArguments& arguments, const MapView&
   std::FILE* out = printed_beside({arguments.geojson_file});
   if (arguments.as_json) {
     nlohmann::json answer = asked_json(map, options.query);
-    answer.update(route_json(found));
+    answer.update(api::summary_json(found));
     fmt::print(out, "{}\n", json_text(answer, 2));
   } else {
     fmt::print(out, "{}", route_text(found, arguments.route, options.query.footprint_m));
   }
-  if (!arguments.geojson_file.empty()) write_file(arguments.geojson_file, json_text(route_geojson(found)));
+  if (!arguments.geojson_file.empty()) write_file(arguments.geojson_file, json_text(api::geojson_of(found)));
 }
 
 void run_localizability(const LocalizabilityArguments& arguments) {

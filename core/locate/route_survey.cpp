@@ -72,21 +72,65 @@ Way way_on(const MapView& map, std::span<const LatLon> route) {
   throw InvalidInput("route-without-length", "the route stays where it begins: give one of at least two places");
 }
 
-void ask(const MapView& map, GridPoint place, LocalizabilityQuery query, RoutePiece& piece) {
-  query.position = map.zone.unproject(place);
+/// The pieces of a way, all as long.
+class Pieces {
+ public:
+  Pieces(const Way& way, double about_m, std::int64_t most) : way_(way) {
+    const double wanted = std::round(way.length_m() / about_m);
+    count_ = static_cast<std::int64_t>(std::clamp(wanted, 1.0, static_cast<double>(most)));
+  }
+
+  std::int64_t count() const { return count_; }
+  double piece_m() const { return way_.length_m() / static_cast<double>(count_); }
+  GridPoint middle(std::int64_t piece) const { return way_.at(piece_m() * (static_cast<double>(piece) + 0.5)); }
+  std::vector<GridPoint> line(std::int64_t piece) const {
+    const double from_m = piece_m() * static_cast<double>(piece);
+    return way_.stretch(from_m, std::min(from_m + piece_m(), way_.length_m()));
+  }
+  bool any_within(const GridBox& box) const {
+    for (std::int64_t i = 0; i < count_; ++i) {
+      if (box.contains(middle(i))) return true;
+    }
+    return false;
+  }
+
+ private:
+  const Way& way_;
+  std::int64_t count_;
+};
+
+std::int64_t first_piece(const Pieces& pieces, double from_m) {
+  const double first = std::round(from_m / pieces.piece_m());
+  if (first >= 0.0 && first < static_cast<double>(pieces.count())) return static_cast<std::int64_t>(first);
+  throw InvalidInput("parameter-out-of-range", fmt::format("{} m lie beyond the route, which is {:.0f} m long", from_m,
+                                                           pieces.piece_m() * static_cast<double>(pieces.count())));
+}
+
+/// nullopt where the deadline came first.
+std::optional<RoutePiece> piece_at(const MapView& map, const std::vector<GridPoint>& line, GridPoint middle,
+                                   LocalizabilityQuery query) {
+  RoutePiece piece;
+  for (const GridPoint point : line) piece.line.push_back(map.zone.unproject(point));
+  if (!map.extent.contains(middle)) return piece;
+  if (query.fix.search.deadline.over()) return std::nullopt;
+  query.position = map.zone.unproject(middle);
   const Localizability found = localizability(map, query);
+  if (!found.complete) return std::nullopt;
   piece.kind = kind_of(found);
   piece.probability = found.probability;
+  return piece;
 }
 
 }  // namespace
 
+bool RouteSurvey::complete() const { return begin_m(std::ssize(pieces)) > length_m - 0.5 * piece_m; }
+
 std::int64_t RouteSurvey::count(PlaceKind kind) const { return std::ranges::count(pieces, kind, &RoutePiece::kind); }
 
 std::optional<double> RouteSurvey::first_fix_m() const {
-  const auto first = std::ranges::find(pieces, PlaceKind::kDistinct, &RoutePiece::kind);
-  if (first == pieces.end()) return std::nullopt;
-  return piece_m() * static_cast<double>(first - pieces.begin());
+  const auto fix = std::ranges::find(pieces, PlaceKind::kDistinct, &RoutePiece::kind);
+  if (fix == pieces.end()) return std::nullopt;
+  return piece_m * static_cast<double>(fix - pieces.begin());
 }
 
 IndexRange RouteSurvey::longest_without_fix() const {
@@ -102,29 +146,25 @@ IndexRange RouteSurvey::longest_without_fix() const {
 
 RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options) {
   const Way way = way_on(map, route);
-  const double wanted = std::round(way.length_m() / options.every_m);
-  const auto count = static_cast<std::int64_t>(std::clamp(wanted, 1.0, static_cast<double>(options.max_places)));
-  RouteSurvey survey{way.length_m(), std::vector<RoutePiece>(static_cast<std::size_t>(count))};
-  const double piece_m = survey.piece_m();
-  std::vector<std::pair<std::size_t, GridPoint>> on_map;
-  for (std::size_t i = 0; i < survey.pieces.size(); ++i) {
-    const double from_m = piece_m * static_cast<double>(i);
-    for (const GridPoint point : way.stretch(from_m, std::min(from_m + piece_m, way.length_m()))) {
-      survey.pieces[i].line.push_back(map.zone.unproject(point));
-    }
-    const GridPoint middle = way.at(from_m + 0.5 * piece_m);
-    if (map.extent.contains(middle)) on_map.emplace_back(i, middle);
-  }
-  if (on_map.empty()) refuse_outside(map);
+  const Pieces pieces(way, options.every_m, options.max_places);
+  if (!pieces.any_within(map.extent)) refuse_outside(map);
+  RouteSurvey survey{way.length_m(), pieces.piece_m(), first_piece(pieces, options.from_m), {}};
+  const std::int64_t count = std::min(pieces.count() - survey.first, options.limit);
+  std::vector<std::optional<RoutePiece>> found(static_cast<std::size_t>(count));
   std::int64_t done = 0;
   std::mutex mutex;
-  parallel_for(static_cast<int>(on_map.size()), options.threads, [&](int index) {
-    const auto& [piece, middle] = on_map[static_cast<std::size_t>(index)];
-    ask(map, middle, options.query, survey.pieces[piece]);
+  parallel_for(static_cast<int>(count), options.threads, [&](int i) {
+    const std::int64_t piece = survey.first + i;
+    auto answer = piece_at(map, pieces.line(piece), pieces.middle(piece), options.query);
     const std::lock_guard lock(mutex);
+    found[static_cast<std::size_t>(i)] = std::move(answer);
     ++done;
-    if (options.progress) options.progress(done, std::ssize(on_map));
+    if (options.progress) options.progress(done, count);
   });
+  for (auto& piece : found) {
+    if (!piece) break;
+    survey.pieces.push_back(std::move(*piece));
+  }
   return survey;
 }
 

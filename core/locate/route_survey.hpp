@@ -17,6 +17,8 @@ struct RouteSurveyOptions {
   LocalizabilityQuery query;
   double every_m = 200.0;          ///< about the length of the pieces of the route; above 0
   std::int64_t max_places = 1000;  ///< longer pieces where it would be more; each takes about a second of one core
+  double from_m = 0.0;             ///< begins with the piece that begins there, as RouteSurvey::begin_m() tells it
+  std::int64_t limit = 1'000'000;  ///< pieces in this answer, at most; above 0
   int threads = 1;
   OnProgress progress{};  ///< in places
 };
@@ -29,19 +31,25 @@ struct RoutePiece {
 };
 
 struct RouteSurvey {
-  double length_m = 0.0;
-  std::vector<RoutePiece> pieces;  ///< of equal lengths, in the order of the flight
+  double length_m = 0.0;           ///< of the whole route
+  double piece_m = 0.0;            ///< of each piece
+  std::int64_t first = 0;          ///< pieces of the route before these
+  std::vector<RoutePiece> pieces;  ///< in the order of the flight, to the end of the route, the limit, or the deadline
 
-  double piece_m() const { return length_m / static_cast<double>(pieces.size()); }
+  /// Of a piece of these, along the route; also of the one after the last.
+  double begin_m(std::int64_t piece) const { return piece_m * static_cast<double>(first + piece); }
+  /// Whether they lead to the end of the route.
+  bool complete() const;
   std::int64_t count(PlaceKind kind) const;
-  /// Until a frame gives a fix; nullopt if none does.
+  /// Until a frame gives a fix, from the first of these pieces; nullopt if none does.
   std::optional<double> first_fix_m() const;
   /// The most pieces in a row none of which is distinct; the first of equal ones. Empty where all are.
   IndexRange longest_without_fix() const;
 };
 
 /// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, and
-/// InvalidInput "route-outside-map" where no piece lies within the box of the map, "route-without-length".
+/// InvalidInput "route-outside-map" where no piece lies within the box of the map, "route-without-length",
+/// "parameter-out-of-range" where `from_m` lies beyond its end.
 RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options);
 
 }  // namespace roadfix

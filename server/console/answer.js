@@ -1,15 +1,7 @@
 // The answer to the question where a picture was taken. It stands only for the picture, the numbers and the map that it
 // was asked with: when one of them is another, it stays to be read, as an old one.
 import { attempt, drawModes, LastQuestion, moveTo, request, reveal, showFix, showOld, showStatus } from './show.js';
-import { upload } from './upload.js';
-
-/// A browser gives no bytes of a file that was written anew since it was chosen.
-async function bytesOf(picture, signal) {
-  const bytes = await picture.arrayBuffer().catch(() => null);
-  signal.throwIfAborted();
-  if (bytes) return bytes;
-  throw { title: 'The picture cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
-}
+import { bytesOf, upload } from './upload.js';
 
 /// How far the question is.
 function showSent(output, sent, size) {

@@ -5,6 +5,7 @@ import { Answer } from './answer.js';
 import { choiceOf, linesOf, stepTo } from './maps.js';
 import { Places } from './places.js';
 import { queryOf } from './question.js';
+import { Route } from './route.js';
 import { attempt, element, LastQuestion, request } from './show.js';
 import { askAgain } from './tiles.js';
 import { Tracks } from './tracks.js';
@@ -15,6 +16,7 @@ L.control.scale({ imperial: false }).addTo(view);
 view.attributionControl.setPrefix('<a href="/console/leaflet-licence.txt">Leaflet</a>');
 const answer = new Answer(view, by('answer'));
 const places = new Places(view, by('place'), by('footprint'), by('layer'));
+const route = new Route(view, by('along'));
 const MAPS_REFRESH_MS = 10_000;
 const PATIENCE_MS = 5000;
 const mapQuestions = new LastQuestion();
@@ -54,6 +56,7 @@ async function openMap() {
   answer.forget();
   places.forget();
   places.removeLayer();
+  forgetRoute();
   if (tiles) tiles.remove();
   tiles = null;
   by('about').textContent = 'opening …';
@@ -94,6 +97,7 @@ async function showMaps({ maps }) {
   if (step === 'redraw') {
     places.forget();
     await drawMap();
+    askRoute();
     await drawLayer();
   }
   if (missed) by('about').prepend(element('div', `there is no map ${missed} to show`, 'why'));
@@ -154,8 +158,20 @@ function askPlace(latlng) {
   if (tiles) places.ask(mapUrl(), latlng);
 }
 
+function askRoute() {
+  const [file] = by('route').files ?? [];
+  if (tiles && file) route.ask(mapUrl(), file, Number(by('footprint').value));
+}
+
+function forgetRoute() {
+  route.forget();
+  by('route').value = '';
+}
+
+const isRoute = (name) => /\.(plan|waypoints|txt|json|geojson)$/i.test(name);
+
 /// Wherever on the page: a browser would leave it to show what was dropped beside its place.
-function acceptDrops(zone, input) {
+function acceptDrops(zone, inputFor) {
   for (const name of ['dragover', 'dragleave', 'drop']) {
     document.addEventListener(name, (event) => {
       event.preventDefault();
@@ -163,6 +179,7 @@ function acceptDrops(zone, input) {
       if (name !== 'drop' || !event.dataTransfer.files.length) return;
       const first = new DataTransfer();  // of several, so that its name stands in the field
       first.items.add(event.dataTransfer.files[0]);
+      const input = inputFor(first.files[0].name);
       input.files = first.files;
       input.dispatchEvent(new Event('input', { bubbles: true }));
     });
@@ -194,7 +211,9 @@ view.on('keypress', ({ originalEvent }) => {
 });
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', drawLayer);
 by('footprint').addEventListener('input', () => places.forget());
-acceptDrops(by('drop'), by('ask').elements.picture);
+by('footprint').addEventListener('change', askRoute);
+by('route').addEventListener('input', askRoute);
+acceptDrops(by('drop'), (name) => (isRoute(name) ? by('route') : by('ask').elements.picture));
 by('follow').addEventListener('submit', (event) => {
   event.preventDefault();
   follow(event.target.elements.track.value.trim());

@@ -1,5 +1,13 @@
-// A picture on its way to the service. Over a slow link it is the sending that takes long, and fetch() does not tell how
+// A file on its way to the service. Over a slow link it is the sending that takes long, and fetch() does not tell how
 // much of it is done; XMLHttpRequest does.
+
+/// A browser gives no bytes of a file that was written anew since it was chosen.
+export async function bytesOf(file, signal) {
+  const bytes = await file.arrayBuffer().catch(() => null);
+  signal.throwIfAborted();
+  if (bytes) return bytes;
+  throw { title: 'The file cannot be read', detail: 'it was changed or removed since it was chosen: choose it again' };
+}
 
 /// As fetch() with { method, body, headers, signal }; tells `progress` how many bytes are sent.
 export function upload(url, { method, body, headers, signal, progress }) {

@@ -1,18 +1,25 @@
 #include "core/locate/localizability.hpp"
+#include "core/locate/route_survey.hpp"
+#include "core/routes/route.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "core/units/error.hpp"
+#include "core/units/json_text.hpp"
 #include "core/units/lru_cache.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/json_parts.hpp"
 #include "server/api/localizability_picture.hpp"
+#include "server/api/route_json.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -24,6 +31,7 @@ namespace roadfix::server {
 namespace {
 
 constexpr api::Range kFootprint{kSmallestFootprintM, kLargestFootprintM};
+constexpr api::Range kRadius{0.0, 20'000.0, true};
 constexpr double kUsualFootprintM = 400.0;
 constexpr int kTilesDrawn = 1;            ///< at a time
 constexpr std::size_t kPlaceBytes = 160;  // that one takes beside its key and a copy of it
@@ -43,7 +51,7 @@ http::Response get_localizability(const Service& service, const http::Request& r
   LocalizabilityQuery query;
   query.position = {fields.number("lat", api::kLatitude), fields.number("lon", api::kLongitude)};
   query.footprint_m = fields.number("footprint_m", kFootprint);
-  query.radius_m = fields.optional_number("radius_m", {0.0, 20'000.0, true}).value_or(query.radius_m);
+  query.radius_m = fields.optional_number("radius_m", kRadius).value_or(query.radius_m);
   const api::HangUp hang_up(request.abandoned);
   query.fix = fix_options(service, request, hang_up.token());
   const SearchThreads::Share share(service.search_threads);
@@ -51,6 +59,51 @@ http::Response get_localizability(const Service& service, const http::Request& r
   nlohmann::json answer = api::to_json(localizability(map->view, query));
   answer["map"] = api::to_json(map->view.id);
   return json_response(answer);
+}
+
+constexpr std::size_t kLongestRoute = std::size_t{1} << 20;  // bytes
+constexpr int kMostPlaces = 1000;
+constexpr api::Range kRouteLength{0.0, 2e7};  // metres: half around the Earth
+
+routes::Route route_in(const http::Request& request) {
+  constexpr std::array<std::string_view, 4> kTypes{"application/json", "application/geo+json", "text/plain",
+                                                   "application/octet-stream"};
+  const std::string type = request.media_type();
+  if (std::ranges::find(kTypes, type) == kTypes.end()) {
+    throw http::InvalidField(
+        "unsupported-media-type", "Content-Type",
+        fmt::format("Content-Type is '{}'; send a route as {}", type.substr(0, 60), fmt::join(kTypes, ", ")));
+  }
+  if (request.body.size() > kLongestRoute) {
+    throw LimitExceeded("route-too-long", fmt::format("the route has {} bytes; at most {} are allowed",
+                                                      request.body.size(), kLongestRoute));
+  }
+  return routes::parse_route(request.body);
+}
+
+http::Response post_route(const Service& service, const http::Request& request) {
+  const auto map = service.maps.find(request.path_parameters.at("map"));
+  const api::Fields fields(request.query);
+  RouteSurveyOptions options;
+  options.query.footprint_m = fields.number("footprint_m", kFootprint);
+  options.query.radius_m = fields.optional_number("radius_m", kRadius).value_or(options.query.radius_m);
+  options.every_m = fields.optional_number("every_m", api::kPositive).value_or(0.5 * options.query.footprint_m);
+  options.max_places = fields.optional_integer("places", 1, kMostPlaces).value_or(kMostPlaces);
+  options.limit = fields.optional_integer("limit", 1, kMostPlaces).value_or(kMostPlaces);
+  options.from_m = fields.optional_number("from_m", kRouteLength).value_or(0.0);
+  const routes::Route route = route_in(request);
+  const api::HangUp hang_up(request.abandoned);
+  options.query.fix = fix_options(service, request, hang_up.token());
+  const SearchThreads::Share share(service.search_threads);
+  options.query.fix.search.threads = share.threads();
+  const RouteSurvey found = survey_route(map->view, route.places, options);
+  nlohmann::json answer = api::geojson_of(found);
+  answer.update(api::summary_json(found));
+  answer["complete"] = found.complete();
+  if (!found.complete()) answer["next_m"] = found.begin_m(std::ssize(found.pieces));
+  answer["left_out"] = route.left_out;
+  answer["map"] = api::to_json(map->view.id);
+  return {200, "application/geo+json", json_text(answer)};
 }
 
 /// What tells one picture of a tile from another.
@@ -143,6 +196,8 @@ http::Response get_localizability_tilejson(const Service& service, const http::R
 void add_localizability_routes(Routes& routes) {
   routes.add("GET", "/v1/maps/{map}/localizability", {"lat", "lon", "footprint_m", "radius_m"}, get_localizability,
              http::Load::kHeavyAnswer);
+  routes.add("POST", "/v1/maps/{map}/localizability",
+             {"footprint_m", "radius_m", "every_m", "places", "from_m", "limit"}, post_route, http::Load::kHeavyAnswer);
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto tiles = std::make_shared<Tiles>(routes.service().http.threads / kThreadsPerWaiting);
   routes.add(

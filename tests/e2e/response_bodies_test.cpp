@@ -80,6 +80,14 @@ class ResponseBodies : public testing::DescribedService {
       expect_as_described("getLocalizability", 200,
                           client_->Get(map + "/localizability?footprint_m=" + footprint_m + "&" + place()));
     }
+    const LatLon at = town_.place;
+    const json line{{"type", "LineString"},
+                    {"coordinates", {{at.lon_deg, at.lat_deg}, {at.lon_deg + 0.001, at.lat_deg}}}};
+    expect_as_described(
+        "findRouteLocalizability", 200,
+        client_->Post(map + "/localizability?footprint_m=400&places=2", line.dump(), "application/json"));
+    expect_as_described("findRouteLocalizability", 422,
+                        client_->Post(map + "/localizability?footprint_m=400", "{}", "application/json"));
     expect_as_described("getLocalizabilityTileJson", 200, client_->Get(map + "/localizability/tilejson.json"));
     expect_as_described("getLocalizabilityTile", 200, client_->Get(map + "/localizability/tiles/" + tile()));
   }

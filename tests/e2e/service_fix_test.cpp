@@ -185,6 +185,37 @@ TEST_F(ServiceFix, SaysBeforeTheFlightWhatAFrameOfAPlaceWouldGive) {
             "400 parameter-out-of-range footprint_m");
 }
 
+TEST_F(ServiceFix, SaysBeforeTheFlightWhereAlongARouteFramesWouldGiveAFix) {
+  const double lon_deg = town->place.lon_deg;
+  const json line{{"type", "LineString"},
+                  {"coordinates", {{lon_deg, town->place.lat_deg}, {lon_deg + 0.1, town->place.lat_deg}}}};
+  const std::string url = "/v1/maps/town/localizability?footprint_m=300&radius_m=300&places=20";
+  const json whole = testing::json_of(client_.Post(url, line.dump(), "application/geo+json"));
+  EXPECT_EQ(whole["complete"], true);
+  EXPECT_EQ(whole["features"].size(), 20U);
+  EXPECT_EQ(whole["features"][0]["properties"]["place"], "distinct") << whole["features"][0];
+  EXPECT_EQ(whole["features"][19]["properties"]["place"], "unknown") << "6 km away";
+  EXPECT_EQ(whole["longest_without_fix"]["to_m"], whole["length_m"]);
+  EXPECT_EQ(whole["map"]["name"], "town");
+
+  const json begin = testing::json_of(client_.Post(url + "&limit=3", line.dump(), "application/geo+json"));
+  EXPECT_EQ(begin["features"].size(), 3U);
+  EXPECT_EQ(begin["complete"], false);
+  const std::string from_m = begin["next_m"].dump();
+  const json rest = testing::json_of(client_.Post(url + "&from_m=" + from_m, line.dump(), "application/geo+json"));
+  ASSERT_EQ(rest["features"].size(), 17U);
+  EXPECT_EQ(rest["features"][0], whole["features"][3]);
+  EXPECT_EQ(rest["complete"], true);
+
+  EXPECT_EQ(testing::refusal(client_.Post(url, line.dump(), "image/png")), "415 unsupported-media-type Content-Type");
+  EXPECT_EQ(
+      testing::refusal(client_.Post(url, R"({"type":"LineString","coordinates":[[1,1],[2,2]]})", "application/json")),
+      "422 route-outside-map");
+  EXPECT_EQ(testing::refusal(client_.Post(url + "&from_m=100000", line.dump(), "application/json")),
+            "422 parameter-out-of-range");
+  EXPECT_EQ(testing::refusal(client_.Post(url, std::string(2'000'000, ' '), "text/plain")), "413 route-too-long");
+}
+
 TEST_F(ServiceFix, ScoresPosesInTheirOrder) {
   json request = testing::json_of(client_.Get(window_query(120.0) + "&format=json"));
   json elsewhere = request["pose"];

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "tests/core/locate/town_and_fields.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -45,12 +47,13 @@ TEST(RouteSurvey, TellsWhereAFlightHasFixesAndHowLongItGoesWithoutOne) {
   std::int64_t told = 0;
   two_at_a_time.progress = [&](std::int64_t done, std::int64_t total) {
     EXPECT_EQ(done, ++told);
-    EXPECT_EQ(total, 6) << "the map has nothing to say of what lies beyond it";
+    EXPECT_EQ(total, 8);
   };
   // Eastwards over town, fields and what is not known, out of the map, and back over the fields to the town.
   const RouteSurvey found =
       survey_route(map, route_of(map, {{0, 400}, {1600, 400}, {1600, 400}, {0, 400}}), two_at_a_time);
-  EXPECT_EQ(told, 6);
+  EXPECT_EQ(told, 8);
+  EXPECT_TRUE(found.complete());
   EXPECT_NEAR(found.length_m, 3200.0, 0.01);
   EXPECT_EQ(kinds_of(found), (std::vector{kDistinct, kBare, kUnknown, kUnknown, kUnknown, kUnknown, kBare, kDistinct}));
   EXPECT_EQ(found.count(kUnknown), 4);
@@ -68,7 +71,7 @@ TEST(RouteSurvey, PiecesAreOfOneLengthAndFollowTheTurnsOfTheRoute) {
   const std::vector<LatLon> route = route_of(map, {{100, 100}, {100, 400}, {800, 400}});
   const RouteSurvey found = survey_route(map, route, halves);
   ASSERT_EQ(found.pieces.size(), 2U);
-  EXPECT_NEAR(found.piece_m(), 500.0, 0.01);
+  EXPECT_NEAR(found.piece_m, 500.0, 0.01);
   const auto expect_place = [&](LatLon place, double east_m, double north_m) {
     const GridPoint point = map.zone.project(place);
     EXPECT_NEAR(point.east_m - kSouthWest.east_m, east_m, 0.01);
@@ -91,6 +94,37 @@ TEST(RouteSurvey, AsksAtFewerPlacesThatStandForLongerPiecesWhereItWouldBeTooMany
   const RouteSurvey found = survey_route(map, route_of(map, {{0, 400}, {800, 400}}), few);
   EXPECT_EQ(kinds_of(found), (std::vector{kDistinct, kBare}));
   EXPECT_EQ(found.longest_without_fix().count(), 1);
+}
+
+TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
+  const MapView map = town_fields_and_unknown_ground();
+  const std::vector<LatLon> route = route_of(map, {{0, 400}, {1600, 400}});
+  RouteSurveyOptions rest = options();
+  rest.from_m = 400.0;
+  const RouteSurvey found = survey_route(map, route, rest);
+  EXPECT_EQ(kinds_of(found), (std::vector{kBare, kUnknown, kUnknown}));
+  EXPECT_TRUE(found.complete());
+  EXPECT_NEAR(found.begin_m(0), 400.0, 0.01);
+  EXPECT_NEAR(found.begin_m(3), 1600.0, 0.01);
+  rest.limit = 2;
+  const RouteSurvey part = survey_route(map, route, rest);
+  EXPECT_EQ(kinds_of(part), (std::vector{kBare, kUnknown}));
+  EXPECT_FALSE(part.complete());
+  EXPECT_NEAR(part.begin_m(2), 1200.0, 0.01) << "where to go on";
+  rest.from_m = 1600.0;
+  EXPECT_EQ(code_of([&] { survey_route(map, route, rest); }), "parameter-out-of-range");
+}
+
+TEST(RouteSurvey, EndsAtTheDeadlineWithWhatItHas) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions late = options();
+  late.query.fix.search.deadline = Deadline({}, std::chrono::steady_clock::now());
+  const RouteSurvey nothing = survey_route(map, route_of(map, {{0, 400}, {1600, 400}}), late);
+  EXPECT_TRUE(nothing.pieces.empty());
+  EXPECT_FALSE(nothing.complete());
+  EXPECT_DOUBLE_EQ(nothing.begin_m(0), 0.0) << "where to go on";
+  const RouteSurvey beyond = survey_route(map, route_of(map, {{2000, 400}, {1200, 400}, {0, 400}}), late);
+  EXPECT_EQ(kinds_of(beyond), (std::vector{kUnknown, kUnknown})) << "which takes no search";
 }
 
 TEST(RouteSurvey, HasNoFirstFixWhereNoneIsToBeExpected) {

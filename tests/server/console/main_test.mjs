@@ -8,7 +8,10 @@ const button = {};
 const [agl, alt] = ['of-camera', 'of-camera of-heights'].map((className) => ({ parentElement: { className } }));
 const fields = { what: { value: 'gsd' }, prior: { value: 'map' }, radius_m: { value: '1000' }, picture: node() };
 Object.assign(by('ask'), { elements: fields, querySelector: () => button, querySelectorAll: () => [agl, alt] });
-Object.assign(document, { getElementById: by, hidden: false });
+const onPage = {};
+Object.assign(document, { getElementById: by, hidden: false, addEventListener(name, act) { onPage[name] = act; } });
+globalThis.Event = class {};
+globalThis.DataTransfer = class { files = []; items = { add: (file) => this.files.push(file) }; };
 
 const circle = { remove() {} };
 const tileLayer = L.tileLayer;
@@ -93,6 +96,28 @@ await run({
     service.answers['/v1/maps'] = { maps: [listed('city'), listed('town', '2')] };
     await acts.focus();
     assert.deepEqual(asksFor(), [true, false], 'the heights were taken out of the map');
+  },
+  async 'what is dropped on the page is a picture or a route by its name'() {
+    const given = [];
+    for (const [input, what] of [[fields.picture, 'picture'], [by('route'), 'route']]) input.dispatchEvent = () => given.push(`${what} ${input.files[0].name}`);
+    const drop = (name) => onPage.drop({ type: 'drop', preventDefault() {}, dataTransfer: { files: [{ name }] } });
+    for (const name of ['frame.JPG', 'mission.plan', 'lawn.WAYPOINTS', 'plan.png']) drop(name);
+    assert.deepEqual(given, ['picture frame.JPG', 'route mission.plan', 'route lawn.WAYPOINTS', 'picture plan.png']);
+  },
+  async 'a route is asked for on the map that is shown, and forgotten with it'() {
+    const asked = [];
+    service.answers['/v1/maps/city/localizability'] = (url) => { asked.push(url); return { status: 422, title: 'no', detail: 'two places at least' }; };
+    Object.assign(by('route'), { value: 'mission.plan', files: [{ name: 'mission.plan', arrayBuffer: async () => new ArrayBuffer(1) }] });
+    by('footprint').value = '300';
+    by('route').listeners.input();
+    await settled();
+    await settled();
+    assert.match(asked[0], /footprint_m=300/);
+    assert.match(by('along').textContent, /two places at least/);
+    by('maps').value = 'town';
+    by('maps').listeners.change();
+    assert.equal(by('along').textContent, '');
+    assert.equal(by('route').value, '');
   },
   async 'a service that does not answer is said to be away, until it answers again'() {
     const answers = service.answers;

@@ -1,7 +1,7 @@
 // A line or points of GeoJSON (RFC 7946), as programs for maps draw them.
 #pragma once
 
-#include "cli/routes/route.hpp"
+#include "core/routes/route.hpp"
 #include "core/units/json_file.hpp"
 
 namespace roadfix::routes {

@@ -1,7 +1,7 @@
 // A plan of QGroundControl: JSON of "fileType": "Plan" (docs.qgroundcontrol.com, Plan File Format).
 #pragma once
 
-#include "cli/routes/route.hpp"
+#include "core/routes/route.hpp"
 #include "core/units/json_file.hpp"
 
 namespace roadfix::routes {

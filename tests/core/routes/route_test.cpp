@@ -1,4 +1,4 @@
-#include "cli/routes/route.hpp"
+#include "core/routes/route.hpp"
 
 #include <gmock/gmock.h>
 

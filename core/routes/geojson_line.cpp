@@ -1,6 +1,6 @@
-#include "cli/routes/geojson_line.hpp"
+#include "core/routes/geojson_line.hpp"
 
-#include "cli/routes/route_json.hpp"
+#include "core/routes/route_json.hpp"
 
 namespace roadfix::routes {
 namespace {

@@ -1,12 +1,12 @@
-#include "cli/routes/mission_plan.hpp"
+#include "core/routes/mission_plan.hpp"
 
 #include <fmt/format.h>
 
 #include <optional>
 #include <utility>
 
-#include "cli/routes/mav_command.hpp"
-#include "cli/routes/route_json.hpp"
+#include "core/routes/mav_command.hpp"
+#include "core/routes/route_json.hpp"
 
 namespace roadfix::routes {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <string_view>
 
-#include "cli/routes/route.hpp"
+#include "core/routes/route.hpp"
 
 namespace roadfix::routes {
 

@@ -1,12 +1,12 @@
-#include "cli/routes/waypoint_list.hpp"
+#include "core/routes/waypoint_list.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <optional>
 
-#include "cli/routes/mav_command.hpp"
-#include "cli/routes/route_json.hpp"
+#include "core/routes/mav_command.hpp"
+#include "core/routes/route_json.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 

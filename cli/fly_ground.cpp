@@ -56,6 +56,21 @@ void look_at_imagery(const FlyOptions& options, const MapView& map, Ground& grou
                                   : fly::make_camera(*ground.imagery, ground.footprint, options.camera, map.cell_m);
 }
 
+/// A service knows from where pictures are taken, and not feature maps.
+void require_measurable(const FlyOptions& options, const std::vector<fly::Recording>& recordings) {
+  if (options.service.base.empty() || options.send == "frames") return;
+  for (const fly::Recording& recording : recordings) {
+    for (const fly::RecordedFrame& frame : recording.frames) {
+      if (!frame.altitude || !frame.altitude->above_sea_m) continue;
+      throw InvalidInput(
+          "option-without-effect",
+          fmt::format("{} tells heights above the sea, by which a service measures pictures, not feature "
+                      "maps: add --send frames",
+                      options.over));
+    }
+  }
+}
+
 void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& ground) {
   if (options.course != "random" || !options.kidnap.empty()) {
     throw InvalidInput("option-without-effect", "a recorded flight has its course: leave out --course and --kidnap");
@@ -66,8 +81,12 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.cell_m = map.cell_m;
   recorded.step_s = options.plan.handling.step_s;
   recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
+  recorded.agl_m = [&map](GridPoint below, double above_sea_m) {
+    return required_agl(map, {below, below}, above_sea_m).middle_m();
+  };
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
+  require_measurable(options, ground.recordings);
   ground.footprint = ground.recordings.front().frames.front().footprint;
 }
 

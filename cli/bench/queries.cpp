@@ -221,7 +221,7 @@ void require_heights(const MapView& map, const std::vector<FrameTruth>& frames, 
 
 DrawnQueries real_frames(const QuerySet& set, const MapView& map, const RoadDetector& detector,
                          const QueryDrawing& drawing) {
-  const auto frames = evaluation::read_frames_csv(set.path, evaluation::Heights::kAboveSeaToo);
+  const auto frames = evaluation::read_frames_csv(set.path);
   require_places_near(map, frames, set);
   require_heights(map, frames, set);
   DrawnQueries drawn;

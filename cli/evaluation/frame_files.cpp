@@ -13,8 +13,8 @@
 
 namespace roadfix::evaluation {
 
-std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv, Heights heights) {
-  return parse_frames_csv(read_named_file(csv), heights);
+std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
+  return parse_frames_csv(read_named_file(csv));
 }
 
 FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {

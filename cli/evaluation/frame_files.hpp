@@ -12,7 +12,7 @@
 namespace roadfix::evaluation {
 
 /// Throws NotFound "file-not-found", and as parse_frames_csv.
-std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv, Heights heights = Heights::kAboveGround);
+std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
 
 /// The picture alone. `folder` is that of the CSV. Throws NotFound "file-not-found", and what decode_frame() and
 /// frame_image() do with the file's name.

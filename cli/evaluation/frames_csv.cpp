@@ -98,7 +98,7 @@ FrameCamera camera_of(const Row& row) {
   return camera;
 }
 
-FrameTruth frame_of(const Row& row, Heights heights) {
+FrameTruth frame_of(const Row& row) {
   if (!row.has("file")) row.refuse("the column 'file' is empty");
   FrameTruth frame;
   frame.file = std::string(row.text("file"));
@@ -110,9 +110,6 @@ FrameTruth frame_of(const Row& row, Heights heights) {
         "focal_px");
   }
   frame.alt_m = row.optional_number("alt_m", -kAnyNumber, kAnyNumber);
-  if (frame.alt_m && heights == Heights::kAboveGround) {
-    row.refuse("alt_m, the height above the sea, is for roadfix bench alone: give agl_m, that above ground");
-  }
   if (row.has("gsd_m")) {
     frame.view = StraightDown{row.number("gsd_m", 1e-3, 1e3)};
   } else {
@@ -143,7 +140,7 @@ std::vector<std::string_view> names_in(std::string_view header) {
 
 }  // namespace
 
-std::vector<FrameTruth> parse_frames_csv(std::string_view text, Heights heights) {
+std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   std::vector<FrameTruth> frames;
   std::optional<std::vector<std::string_view>> names;
   int line = 0;
@@ -155,7 +152,7 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text, Heights heights)
     if (!names) {
       names = names_in(row);
     } else {
-      frames.push_back(frame_of(Row(*names, row, line), heights));
+      frames.push_back(frame_of(Row(*names, row, line)));
     }
   }
   if (frames.empty()) refuse(line, "there are no frames");

@@ -24,10 +24,7 @@ struct FrameTruth {
   std::optional<double> time_s;  ///< when it was taken, from any one moment on
 };
 
-/// Which heights of frames a reader of their CSV can use.
-enum class Heights { kAboveGround, kAboveSeaToo };
-
 /// Throws InvalidInput ("frames-csv") naming line and column.
-std::vector<FrameTruth> parse_frames_csv(std::string_view text, Heights heights = Heights::kAboveGround);
+std::vector<FrameTruth> parse_frames_csv(std::string_view text);
 
 }  // namespace roadfix::evaluation

@@ -51,12 +51,23 @@ std::vector<double> times_of(const Sequence& sequence, double step_s) {
   return times;
 }
 
-RecordedFrame recorded(const std::filesystem::path& folder, const FrameTruth& truth, double time_s, const UtmZone& zone,
+std::optional<Altitude> altitude_of(const FrameTruth& truth, const GridPose& pose, const RecordingOptions& options) {
+  const auto* camera = std::get_if<FrameCamera>(&truth.view);
+  if (camera == nullptr) return std::nullopt;
+  if (!truth.alt_m) return Altitude{std::nullopt, camera->agl_m};
+  return said_of(truth.file.string(), [&] {
+    return Altitude{truth.alt_m, options.agl_m(pose.position, *truth.alt_m)};
+  });
+}
+
+RecordedFrame recorded(const std::filesystem::path& folder, FrameTruth truth, double time_s, const UtmZone& zone,
                        const RecordingOptions& options) {
   const FramePixels picture = evaluation::read_frame(folder, truth, options.border);
   RecordedFrame frame;
   frame.truth = on_grid(truth.pose, zone);
   frame.time_s = time_s;
+  frame.altitude = altitude_of(truth, frame.truth, options);
+  if (frame.altitude) std::get<FrameCamera>(truth.view).agl_m = frame.altitude->agl_m;
   frame.footprint = evaluation::footprint_of(picture, truth);
   if (options.detector != nullptr) {
     const GroundView view = evaluation::view_of(picture, truth, *options.detector);
@@ -111,6 +122,7 @@ Flight replay(const Recording& recording, const FlightPlan& plan, std::uint64_t 
     if (frame_comes(plan, step, camera)) {
       input.features = frame.observation.features;
       input.frame = frame.observation.frame;
+      input.altitude = frame.altitude;
     }
     flight.push_back({frame.truth, std::move(input)});
     before = &frame;

@@ -44,11 +44,15 @@ json camera_fields(const FrameCamera& camera) {
   return fields;
 }
 
-Picture picture_of(const CameraFrame& frame) {
+Picture picture_of(const CameraFrame& frame, const std::optional<Altitude>& altitude) {
   const auto png = encode_frame(frame.picture);
   Picture picture{{{"kind", "frame"}, {"cell_m", frame.cell_m}}, {png.begin(), png.end()}};
   if (const auto* camera = std::get_if<FrameCamera>(&frame.view)) {
     picture.fields.update(camera_fields(*camera));
+    if (altitude && altitude->above_sea_m) {
+      picture.fields.erase("agl_m");
+      picture.fields["alt_m"] = *altitude->above_sea_m;
+    }
   } else {
     picture.fields["gsd_m"] = std::get<StraightDown>(frame.view).gsd_m;
   }
@@ -110,7 +114,7 @@ json track_request(const ServicePlan& plan, std::uint64_t seed, const Prior& sta
 StepRequest step_request(const Report& step) {
   json fields = told(step);
   if (!step.saw()) return {"", fields.dump(), "application/json"};
-  Picture picture = step.frame ? picture_of(step.frame()) : picture_of(*step.features);
+  Picture picture = step.frame ? picture_of(step.frame(), step.altitude) : picture_of(*step.features);
   fields.update(picture.fields);
   return {as_query(fields), std::move(picture.png), "image/png"};
 }

@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "tests/support/run_program.hpp"
@@ -12,6 +14,7 @@
 namespace roadfix {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::ProgramResult;
@@ -19,6 +22,41 @@ using testing::run_program;
 using testing::text_of;
 
 constexpr int kFrames = 3;
+
+/// Of a table of steps, whose last column is time.
+std::string without_times(const std::string& text) {
+  std::string kept;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    kept += text.substr(at, text.rfind(',', end) - at) + '\n';
+    at = end + 1;
+  }
+  return kept;
+}
+
+/// The frames of a table as of a camera that leans, with a column of this name for its height.
+void write_as_of_a_camera(const std::string& from, const std::string& to, const std::string& height, double height_m) {
+  std::istringstream lines(text_of(from));
+  std::ofstream camera(to);
+  for (std::string line; std::getline(lines, line);) {
+    camera << line.substr(0, line.rfind(','));
+    if (line.starts_with("file,")) {
+      camera << ',' << height << ",focal_px,roll_deg,pitch_deg\n";
+    } else {
+      camera << ',' << height_m << ",250,2,-5\n";
+    }
+  }
+}
+
+/// Around the town.
+void write_level_elevation_model(const std::string& name, double height_m) {
+  std::ofstream(name + ".prj")
+      << R"(GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563]],PRIMEM["Greenwich",0],)"
+      << R"(UNIT["degree",0.0174532925199433]])";
+  std::ofstream model(name + ".asc");
+  model << "ncols 100\nnrows 100\nxllcorner 38.22\nyllcorner 37.71\ncellsize 0.001\n";
+  for (int cell = 0; cell < 100 * 100; ++cell) model << height_m << ' ';
+}
 
 class FlyCommand : public ::testing::Test {
  protected:
@@ -93,6 +131,24 @@ TEST_F(FlyCommand, ReplaysARecordedFlight) {
   EXPECT_THAT(roadfix(replay + " --course survey").err, HasSubstr("option-without-effect"));
 }
 
+TEST_F(FlyCommand, ReplaysAFlightByItsHeightsAboveTheSeaOverAMapThatKnowsThatOfItsGround) {
+  write_as_of_a_camera(file("town/frames/frames.csv"), file("town/frames/agl.csv"), "agl_m", 150.0);
+  write_as_of_a_camera(file("town/frames/frames.csv"), file("town/frames/alt.csv"), "alt_m", 850.0);
+  const auto flown = [](const std::string& name, const std::string& more = "") {
+    return roadfix("fly " + map() + " --over " + file("town/frames/" + name) +
+                   " --detector tree --tree-roots 500 --particles 500 --csv " + file(name + "-flown.csv") + more);
+  };
+  EXPECT_THAT(flown("alt.csv").err,
+              AllOf(HasSubstr("frame_01.png: the map town does not know how high"), HasSubstr("[terrain-missing]")));
+  write_level_elevation_model(file("dem"), 700.0);
+  ASSERT_EQ(roadfix("terrain " + map() + " " + file("dem.asc")).code, 0);
+  ASSERT_EQ(flown("agl.csv").code, 0);
+  const ProgramResult by_altitude = flown("alt.csv");
+  ASSERT_EQ(by_altitude.code, 0) << by_altitude.err;
+  EXPECT_EQ(without_times(text_of(file("alt.csv-flown.csv"))), without_times(text_of(file("agl.csv-flown.csv"))));
+  EXPECT_THAT(flown("alt.csv", " --server http://127.0.0.1:9").err, HasSubstr("add --send frames"));
+}
+
 /// Its detector has started threads by the time that it is ready to stop, and a signal goes to any that takes it.
 TEST_F(FlyCommand, StopsInGoodOrderAtASignal) {
   const std::string flight = ROADFIX_PROGRAM " fly " + map() + " --over " + after() +
@@ -109,15 +165,6 @@ TEST_F(FlyCommand, RepeatsAFlightOverTheMapItselfFromItsSeed) {
       "fly " + map() + " --footprint-m 200 --steps 5 --particles 300 --seed 9 --runs 2 --registration 3 --csv ";
   ASSERT_EQ(roadfix(flight + file("a.csv")).code, 0);
   ASSERT_EQ(roadfix(flight + file("b.csv")).code, 0);
-  const auto without_times = [](const std::string& text) {
-    std::string kept;
-    for (std::size_t at = 0; at < text.size();) {
-      const std::size_t end = text.find('\n', at);
-      kept += text.substr(at, text.rfind(',', end) - at) + '\n';
-      at = end + 1;
-    }
-    return kept;
-  };
   EXPECT_EQ(without_times(text_of(file("a.csv"))), without_times(text_of(file("b.csv"))));
 }
 

@@ -23,7 +23,7 @@ void read_manifest(std::string_view text) {
 
 void read_frames(std::string_view text) {
   try {
-    for (const auto& frame : roadfix::evaluation::parse_frames_csv(text, roadfix::evaluation::Heights::kAboveSeaToo)) {
+    for (const auto& frame : roadfix::evaluation::parse_frames_csv(text)) {
       const auto* camera = std::get_if<roadfix::FrameCamera>(&frame.view);
       const double size_m = camera ? camera->agl_m : std::get<roadfix::StraightDown>(frame.view).gsd_m;
       if (frame.file.empty() || !(size_m >= 0.0)) std::abort();

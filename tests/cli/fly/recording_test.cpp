@@ -145,6 +145,28 @@ TEST_F(Recordings, OfACameraShowTheGroundThatItSaw) {
   EXPECT_EQ(std::get<FrameCamera>(sent.view).pitch, Angle::degrees(30));
 }
 
+TEST_F(Recordings, TellTheFiltersFromWhereACameraSawWhatItShows) {
+  std::ofstream(folder / "heights.csv") << "file,lat,lon,heading_deg,agl_m,alt_m,gsd_m,focal_px,roll_deg,pitch_deg\n"
+                                           "10.png,57.5,21,0,100,,,50,0,0\n"
+                                           "20.png,57.5,21,0,,900,,50,0,0\n"
+                                           "30.png,57.5,21,0,,,2\n";
+  const GridPoint below = zone.project({57.5, 21.0});
+  options.agl_m = [&](GridPoint point, double above_sea_m) {
+    EXPECT_LT(distance_m(point, below), 1e-6);
+    return above_sea_m - 700.0;
+  };
+  const Recording recording = read_recordings(folder / "heights.csv", zone, options).at(0);
+  EXPECT_EQ(recording.frames[1].footprint.width_m, 20 * 200.0 / 50.0);
+  EXPECT_EQ(recording.frames[1].observation.features->cells.cols(),
+            2 * recording.frames[0].observation.features->cells.cols());
+  const Flight flight = replayed(recording);
+  EXPECT_FALSE(flight[0].input.altitude.value().above_sea_m);
+  EXPECT_EQ(flight[0].input.altitude->agl_m, 100.0);
+  EXPECT_EQ(flight[1].input.altitude.value().above_sea_m, 900.0);
+  EXPECT_EQ(flight[1].input.altitude->agl_m, 200.0);
+  EXPECT_FALSE(flight[2].input.altitude);
+}
+
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
   EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
   EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "file-not-found");

@@ -71,6 +71,15 @@ TEST(StepRequest, IsAPictureDescribedInTheQuery) {
             "&time_us=4000000&turn_deg=3.0");
 }
 
+TEST(StepRequest, OfAFrameTellsTheHeightAboveTheSeaWhereThatIsKnownInPlaceOfTheOneThatFollows) {
+  Report report = seen_by(camera());
+  report.altitude = Altitude{std::nullopt, 250.0};
+  EXPECT_THAT(step_request(report).query, HasSubstr("agl_m=250.0"));
+  report.altitude->above_sea_m = 930.5;
+  EXPECT_THAT(step_request(report).query, HasSubstr("alt_m=930.5"));
+  EXPECT_THAT(step_request(report).query, Not(HasSubstr("agl_m")));
+}
+
 TEST(StepRequest, IsJsonWhereNothingWasSeen) {
   Report report;
   report.sequence = 3;

@@ -11,7 +11,8 @@ namespace roadfix {
 
 struct PlacedFeatures {
   FeatureMap features;
-  BodyOffset offset;  ///< of the UAV when it took this frame, from where it took the reference frame
+  BodyOffset offset;      ///< of the UAV when it took this frame, from where it took the reference frame
+  double higher_m = 0.0;  ///< it was than there, above ground or the sea, as these heights are told
 
   friend bool operator==(const PlacedFeatures&, const PlacedFeatures&) = default;
 };

@@ -28,6 +28,14 @@ double agl_at(const MapView& map, const Altitude& altitude, GridPoint point) {
   return map.terrain->height_above_ground_m(point, *altitude.above_sea_m).value_or(altitude.agl_m);
 }
 
+/// Of what was seen from so much higher.
+Altitude raised(const Altitude& altitude, double higher_m) {
+  Altitude higher = altitude;
+  higher.agl_m += higher_m;
+  if (higher.above_sea_m) *higher.above_sea_m += higher_m;
+  return higher;
+}
+
 /// All that were laid together for a fix, the one whose position is asked for first.
 std::vector<PlacedFeatures> frames_of(const FeatureMap& features, const FixOptions& options) {
   if (!options.own_frame) return {{features, {}}};
@@ -38,7 +46,7 @@ std::vector<PlacedFeatures> frames_of(const FeatureMap& features, const FixOptio
 
 /// A frame where it was taken, if the first of all was at `place`.
 struct TakenFrame {
-  double agl_m;
+  double scale;     ///< of what it shows, to that of the features
   FeatureMap seen;  ///< in the size that this height gives it
   Relief relief;
 };
@@ -46,17 +54,18 @@ struct TakenFrame {
 TakenFrame taken_from(const MapView& map, const PlacedFeatures& frame, const Altitude& altitude,
                       const GridPose& place) {
   const GridPose pose = moved(place, frame.offset);
-  const double agl_m = agl_at(map, altitude, pose.position);
-  return {agl_m, seen_from(frame.features, altitude, agl_m), Relief(*map.terrain, pose, agl_m)};
+  const Altitude own = raised(altitude, frame.higher_m);
+  const double agl_m = agl_at(map, own, pose.position);
+  return {agl_m / own.agl_m, seen_from(frame.features, own, agl_m), Relief(*map.terrain, pose, agl_m)};
 }
 
-/// By the relief, and by heights that differ from that of the first frame.
+/// By the relief, and by heights of the ground that differ from that of the first frame, of whose scale all were.
 bool is_displaced(const MapView& map, std::span<const PlacedFeatures> frames, const Altitude& altitude,
                   const GridPose& place) {
-  const double agl_m = agl_at(map, altitude, place.position);
+  const double scale = agl_at(map, altitude, place.position) / altitude.agl_m;
   return std::ranges::any_of(frames, [&](const PlacedFeatures& frame) {
     const TakenFrame taken = taken_from(map, frame, altitude, place);
-    const double grown_m = 0.5 * taken.seen.side_m() * std::abs(1.0 - agl_m / taken.agl_m);
+    const double grown_m = 0.5 * taken.seen.side_m() * std::abs(1.0 - scale / taken.scale);
     return grown_m + taken.relief.largest_shift_m(taken.seen) >= kLeastShiftM;
   });
 }

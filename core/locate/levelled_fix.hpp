@@ -14,7 +14,7 @@ namespace roadfix {
 
 /// What frames show if the vehicle took the first of them at `place`, and the others at their offsets from there: each
 /// in the size that its height above the ground gives it, and levelled (core/grid/relief.hpp), in cells of one size.
-/// The map has heights; `frames` is not empty, and all of it was made for `altitude`.
+/// The map has heights; `frames` is not empty, and all of it was made for `altitude`, raised by each frame's higher_m.
 std::vector<PlacedFeatures> levelled_frames(const MapView& map, std::span<const PlacedFeatures> frames,
                                             const Altitude& altitude, const GridPose& place);
 

@@ -47,7 +47,8 @@ void pass_reach(auto& io, auto& reach) {
 }
 
 void pass_frame(auto& io, auto& frame) {
-  auto& [features, offset] = frame.placed;
+  auto& [features, offset, higher_m] = frame.placed;
+  assert(higher_m == 0.0);  // tracks size each frame when it comes
   io(features.cells, features.cell_m, features.nadir.col, features.nadir.row, features.nadir_sigma_m,
      features.nadir_heading_sigma);
   io(offset.forward_m, offset.right_m, offset.turn, frame.position_m2, frame.turn_rad2);

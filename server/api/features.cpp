@@ -8,6 +8,15 @@
 #include "core/locate/told_frames.hpp"
 
 namespace roadfix::api {
+namespace {
+
+/// Than the first one was, as far as their files tell.
+double higher_m(const Features& other, const Features& first) {
+  if (!other.camera_in_file || !first.camera_in_file) return 0.0;
+  return other.camera_in_file->agl_m - first.camera_in_file->agl_m;
+}
+
+}  // namespace
 
 SeenFrame seen_frame(Frame frame, const RoadDetector& detector, std::int64_t max_pixels, bool sketched) {
   const FrameScale& scale = frame.scale;
@@ -28,7 +37,7 @@ Features detected(const SeenFrame& frame, const Detection& detection) {
 Features together(Features first, std::vector<OtherFeatures> others, double max_cells) {
   std::vector<PlacedFeatures> parts{{std::move(first.map), {}}};
   for (OtherFeatures& other : others) {
-    parts.push_back({std::move(other.features.map), other.offset});
+    parts.push_back({std::move(other.features.map), other.offset, higher_m(other.features, first)});
     if (first.detect_time) *first.detect_time += other.features.detect_time.value();
   }
   FramesTogether laid = laid_together(parts, max_cells);

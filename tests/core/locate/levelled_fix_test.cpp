@@ -22,15 +22,17 @@ using testing::pose_within;
 class Slopes : public testing::Locate {
  protected:
   Slopes() { view_.terrain = std::make_shared<const Terrain>(ground_.terrain()); }
-  double agl_m(const GridPose& truth) const { return kAboveSeaM - ground_.height_m(truth.position); }
+  double agl_m(const GridPose& truth, double higher_m = 0.0) const {
+    return kAboveSeaM + higher_m - ground_.height_m(truth.position);
+  }
   Prior around(GridPoint point, double radius_m) const {
     Prior prior;
     prior.circle = GeoCircle{view_.zone.unproject(point), radius_m};
     return prior;
   }
-  FeatureMap displaced(const GridPose& truth) {
+  FeatureMap displaced(const GridPose& truth, double higher_m = 0.0) {
     const FeatureMap ground = observed_at(map_, truth, 260, 260, 2.0, {0.1, 0.1}, random_);
-    return shown_in_relief(ground, Relief(*view_.terrain, truth, agl_m(truth)), 180, 180);
+    return shown_in_relief(ground, Relief(*view_.terrain, truth, agl_m(truth, higher_m)), 180, 180);
   }
 
   static constexpr double kAboveSeaM = 800.0;
@@ -71,13 +73,13 @@ TEST_F(Slopes, AreLevelledInEachOfSeveralFramesFromItsOwnHeight) {
   const GridPose truth = pose_within(view_.extent, 450.0, random_);
   const Prior near = around(truth.position, 150.0);
   const Altitude altitude{kAboveSeaM, required_agl(view_, search_region(view_, near, {}).box, kAboveSeaM).middle_m()};
-  const auto taken_at = [&](const BodyOffset& offset) -> PlacedFeatures {
+  const auto taken_at = [&](const BodyOffset& offset, double higher_m) -> PlacedFeatures {
     const GridPose pose = moved(truth, offset);
-    FeatureMap seen = displaced(pose);
-    seen.cell_m *= altitude.agl_m / agl_m(pose);
-    return {resampled(seen, 2.0), offset};
+    FeatureMap seen = displaced(pose, higher_m);
+    seen.cell_m *= (altitude.agl_m + higher_m) / agl_m(pose, higher_m);
+    return {resampled(seen, 2.0), offset, higher_m};
   };
-  const std::vector<PlacedFeatures> frames{taken_at({}), taken_at({-150.0, 20.0, Angle::degrees(10.0)})};
+  const std::vector<PlacedFeatures> frames{taken_at({}, 0.0), taken_at({-150.0, 20.0, Angle::degrees(10.0)}, 90.0)};
   const FeatureMap together = laid_together(frames, 1e6).features;
   const FixOptions options{.own_frame = frames[0].features, .others = {frames[1]}};
   const Fix as_shown = locate_from(altitude, view_, together, near, options);

@@ -81,6 +81,7 @@ TEST(FlightRequest, ReadsTheCameraOfEachFrameFromItsFile) {
   ASSERT_GT(std::abs(parts[0].features.nadir.row - parts[1].features.nadir.row), 5.0);
   EXPECT_EQ(features.map, laid_together(parts, 1e6).features);
   EXPECT_EQ(features.camera_in_file.value().agl_m, 40.0) << "of the picture that is asked for";
+  EXPECT_EQ(features.others.at(0).higher_m, 40.0);
   EXPECT_TRUE(features.detect_time);
 }
 

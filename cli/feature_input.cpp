@@ -78,8 +78,8 @@ FeatureInput::FeatureInput(const FeatureInputOptions& options, const MapView& ma
   if (options.frame.given()) detector_ = detector_for(map, options.detector);
 }
 
-api::Features FeatureInput::read(const std::string& path) {
-  api::Features first = features_in(path);
+api::Features FeatureInput::read(const std::string& path, std::optional<double> takeoff_agl_m) {
+  api::Features first = features_in(path, takeoff_agl_m);
   if (options_.also.empty()) return first;
   if (options_.also.size() >= kMaxFrames) {
     throw LimitExceeded("too-many-frames",
@@ -88,7 +88,7 @@ api::Features FeatureInput::read(const std::string& path) {
   std::vector<api::OtherFeatures> others;
   for (const std::string& text : options_.also) {
     const Another another = parse_also(text);
-    others.push_back({features_in(another.path), another.offset});
+    others.push_back({features_in(another.path, takeoff_agl_m), another.offset});
   }
   api::Features all = api::together(std::move(first), std::move(others), kMaxCells);
   for (const std::size_t number : api::frame_numbers(all.left_out)) {
@@ -101,10 +101,12 @@ api::Features FeatureInput::read(const std::string& path) {
   return all;
 }
 
-api::Features FeatureInput::features_in(const std::string& path) {
+api::Features FeatureInput::features_in(const std::string& path, std::optional<double> takeoff_agl_m) {
   api::Features features;
   if (detector_ != nullptr) {
-    features = api::detected(ground_seen(options_.frame, path, *detector_), {*detector_, map_.cell_m});
+    FrameOptions frame = options_.frame;
+    frame.takeoff_agl_m = takeoff_agl_m;
+    features = api::detected(ground_seen(frame, path, *detector_), {*detector_, map_.cell_m});
   } else {
     features.map = feature_map_with_note(path);
   }

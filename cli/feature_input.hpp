@@ -35,14 +35,15 @@ class FeatureInput {
   /// Loads the detector that suits the map, for frames. Both arguments must outlive it.
   FeatureInput(const FeatureInputOptions& options, const MapView& map);
 
-  /// Roads of a frame come in the map's cells; several frames (--also) are laid together. Throws InvalidInput
+  /// Roads of a frame come in the map's cells; several frames (--also) are laid together. `takeoff_agl_m`: of photos,
+  /// see KnownView. Throws InvalidInput
   /// "input-kind-missing" where a feature map does not say so itself and no option does. Says on standard error which
   /// of several were left out, and where another detector than reads frames found the roads of feature maps, once of
   /// each.
-  api::Features read(const std::string& path);
+  api::Features read(const std::string& path, std::optional<double> takeoff_agl_m = {});
 
  private:
-  api::Features features_in(const std::string& path);
+  api::Features features_in(const std::string& path, std::optional<double> takeoff_agl_m);
   FeatureMap feature_map_with_note(const std::string& path);
 
   const FeatureInputOptions& options_;

@@ -44,6 +44,7 @@ struct FixArguments {
   double heading_range_deg = 180.0;
   std::string calibration;
   std::optional<double> alt_m;
+  std::optional<double> takeoff_alt_m;
   FixOptions fix;
   std::optional<std::chrono::milliseconds> time_limit;
   bool as_json = false;
@@ -82,42 +83,72 @@ struct Search {
   FixOptions options;
   std::optional<std::chrono::milliseconds> time_limit;
   FeatureInputOptions input;
-  std::optional<Altitude> altitude;  ///< of frames
+  GridBox box;                          ///< of the region that is searched
+  std::optional<Altitude> altitude;     ///< of frames, where all have the same
+  std::optional<double> takeoff_alt_m;  ///< of photos, whose files tell the rest
+
+  double agl_m(double above_sea_m) const { return required_agl(view, box, above_sea_m).middle_m(); }
 };
 
 Search search_of(const FixArguments& options, bool several) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // all pictures search the same map
   const std::size_t cache_bytes = several ? kSearchCacheBytes : 0;
-  Search search{
-      view_with_notes(options.map, cache_bytes), prior_of(options), options.fix, options.time_limit, options.input, {}};
+  Search search{view_with_notes(options.map, cache_bytes),
+                prior_of(options),
+                options.fix,
+                options.time_limit,
+                options.input,
+                {},
+                {},
+                options.takeoff_alt_m};
   // Before the frame, in which roads are looked for.
-  const PoseRegion region = search_region(search.view, search.prior, options.fix);
+  search.box = search_region(search.view, search.prior, options.fix).box;
+  if (options.takeoff_alt_m) required_ground(search.view, search.box);
   double& agl_m = search.input.frame.camera.agl_m;
-  if (options.alt_m) agl_m = required_agl(search.view, region.box, *options.alt_m).middle_m();
+  if (options.alt_m) agl_m = search.agl_m(*options.alt_m);
   if (agl_m > 0.0) search.altitude = Altitude{options.alt_m, agl_m};
   if (!options.calibration.empty()) search.options.calibration = read_calibration(options.calibration);
   return search;
 }
 
-Fix located(const Search& search, api::Features& input, OnProgress progress = {}) {
+/// What a picture shows, and from where.
+struct Seen {
+  api::Features features;
+  std::optional<Altitude> altitude;
+};
+
+Seen seen_in(const std::string& picture, const Search& search, FeatureInput& inputs) {
+  if (!search.takeoff_alt_m) {
+    api::Features features = inputs.read(picture);
+    const auto altitude = search.altitude ? search.altitude : api::altitude_in_file(features);
+    return {std::move(features), altitude};
+  }
+  const auto agl_of = [&](double above_sea_m) { return search.agl_m(above_sea_m); };
+  const api::AboveTakeoff taken = above_takeoff(picture, *search.takeoff_alt_m, agl_of);
+  return {inputs.read(picture, taken.takeoff_agl_m), taken.altitude};
+}
+
+Fix located(const Search& search, Seen& seen, OnProgress progress = {}) {
   FixOptions options = search.options;
+  api::Features& input = seen.features;
   options.own_frame = std::move(input.own_frame);
   options.others = std::move(input.others);
   options.left_out = input.left_out;
   options.search.deadline = Deadline(stop_on_signals()).within(search.time_limit);
   options.search.progress = std::move(progress);
-  return locate_levelled(search.altitude, search.view, input.map, search.prior, options);
+  return locate_levelled(seen.altitude, search.view, input.map, search.prior, options);
 }
 
 void fix_one(const FixArguments& options, const std::filesystem::path& picture) {
   const Search search = search_of(options, false);
-  api::Features input = FeatureInput(search.input, search.view).read(picture);
+  FeatureInput inputs(search.input, search.view);
+  Seen seen = seen_in(picture, search, inputs);
   Progress progress("searching", "headings");
   const auto began = std::chrono::steady_clock::now();
-  const Fix fix = located(search, input, [&](std::int64_t done, std::int64_t total) {
+  const Fix fix = located(search, seen, [&](std::int64_t done, std::int64_t total) {
     if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
   });
-  print_answer(fix, input, options.as_json, std::nullopt);
+  print_answer(fix, seen.features, options.as_json, std::nullopt);
 }
 
 /// What was answered before the end came is in the table, whatever ended the command.
@@ -137,10 +168,10 @@ void fix_all(const FixArguments& options, const Pictures& pictures) {
   std::size_t left_out = 0;
   try {
     left_out = for_each_picture(pictures, "locating", options.csv.empty(), [&](const std::filesystem::path& file) {
-      api::Features input = inputs.read(file);
-      const Fix fix = located(search, input);
+      Seen seen = seen_in(file, search, inputs);
+      const Fix fix = located(search, seen);
       if (options.csv.empty()) {
-        print_answer(fix, input, options.as_json, file.string());
+        print_answer(fix, seen.features, options.as_json, file.string());
       } else {
         table += row_of(file, fix);
         if (grows && std::chrono::steady_clock::now() - saved >= kUnsaved) save();
@@ -217,6 +248,13 @@ void add_fix_command(CLI::App& app) {
       ->excludes("--gsd")
       ->excludes("--exif")
       ->excludes("--cell");
+  command
+      ->add_option("--takeoff-alt", o->takeoff_alt_m,
+                   "Height of the take-off's ground above the sea in metres, with --exif, whose height above the "
+                   "take-off then gives that above the sea, where the map knows how high its ground is")
+      ->check(between(api::kAltitude.min, api::kAltitude.max))
+      ->needs("--exif")
+      ->excludes("--agl");
   add_prior_options(*command, *o);
   command
       ->add_option("--confidence", o->fix.confidence,

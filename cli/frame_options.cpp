@@ -40,7 +40,8 @@ FrameCamera told_camera(const FrameCamera& camera) {
 api::FrameScale scale_of(const std::string& path, const FrameOptions& options) {
   if (options.camera_in_file) {
     const FrameCamera& told = options.camera;
-    const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch};
+    const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch,
+                          options.takeoff_agl_m};
     return decoded(path, [&](Bytes bytes) { return api::scale_in_file(bytes, known); });
   }
   if (!options.has_camera()) return {StraightDown{options.gsd_m}};
@@ -120,6 +121,10 @@ api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path,
   const cv::Mat pixels = decoded(path, [](Bytes bytes) { return decode_frame(bytes, kMaxPixels); });
   const api::Frame frame{pixels, scale_of(path, options), options.border};
   return said_of(path, [&] { return api::seen_frame(frame, detector, kMaxPixels); });
+}
+
+api::AboveTakeoff above_takeoff(const std::string& path, double takeoff_alt_m, const api::AglOf& agl_of) {
+  return decoded(path, [&](Bytes bytes) { return api::above_takeoff(bytes, takeoff_alt_m, agl_of); });
 }
 
 FoundFeatureMap feature_map_in(const std::string& path, const ToldScale& told) {

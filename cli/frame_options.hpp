@@ -7,6 +7,7 @@
 
 #include "cli/command.hpp"
 #include "core/detect/feature_map_codec.hpp"
+#include "server/api/altitude_request.hpp"
 #include "server/api/features.hpp"
 
 namespace roadfix::cli {
@@ -14,7 +15,8 @@ namespace roadfix::cli {
 struct FrameOptions {
   double gsd_m = 0.0;  ///< of a frame seen straight from above; 0 = by the camera
   bool camera_in_file = false;
-  FrameCamera camera;  ///< what is told of it; without a height nothing is
+  FrameCamera camera;                   ///< what is told of it; without a height nothing is
+  std::optional<double> takeoff_agl_m;  ///< KnownView::takeoff_agl_m, of a photo
   Border border = Border::kSeen;
 
   bool given() const { return gsd_m > 0.0 || has_camera(); }
@@ -32,6 +34,10 @@ void require_frame_for(const FrameOptions& options);
 /// frame_image, rectify and camera_of(DronePicture) throw, InvalidInput "not-a-file" and NotFound "file-not-found";
 /// all about the file name it. options.given() must hold.
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector);
+
+/// api::above_takeoff() of the photo in a file. Throws what that throws, naming the file, InvalidInput "not-a-file" and
+/// NotFound "file-not-found".
+api::AboveTakeoff above_takeoff(const std::string& path, double takeoff_alt_m, const api::AglOf& agl_of);
 
 struct FoundFeatureMap {
   FeatureMap map;

@@ -65,19 +65,20 @@ std::optional<AglRange> agl_above(const MapView& map, const GridBox& box, double
   return AglRange{std::min(highest_m, std::max(kLeastAglM, above_sea_m - ground->highest_m)), highest_m};
 }
 
+HeightRange required_ground(const MapView& map, const GridBox& box) {
+  if (const auto ground = ground_of(map, box)) return *ground;
+  throw InvalidInput("terrain-missing",
+                     fmt::format("the map {} does not know how high its ground is there: give the height above "
+                                 "ground, or add heights with roadfix terrain",
+                                 map.id.name));
+}
+
 AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m) {
   if (const auto agl = agl_above(map, box, above_sea_m)) return *agl;
-  const auto ground = ground_of(map, box);
-  if (!ground) {
-    throw InvalidInput("terrain-missing",
-                       fmt::format("the map {} does not know how high its ground is there: give the height above "
-                                   "ground, or add heights with roadfix terrain",
-                                   map.id.name));
-  }
   throw InvalidInput("below-ground",
                      fmt::format("at {:.0f} m above the sea the UAV would be below the ground, which lies at {:.0f} m "
                                  "and more: check its height above the sea",
-                                 above_sea_m, ground->lowest_m));
+                                 above_sea_m, required_ground(map, box).lowest_m));
 }
 
 FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m) {

@@ -33,8 +33,9 @@ struct AglRange {
 /// Of a vehicle anywhere above the known ground of the box, but for ground that is higher than the vehicle; nullopt
 /// where there is none.
 std::optional<AglRange> agl_above(const MapView& map, const GridBox& box, double above_sea_m);
-/// The same; throws InvalidInput "terrain-missing" where the map knows no heights there, "below-ground" where all of it
-/// is higher.
+/// Of the known ground of the box. Throws InvalidInput "terrain-missing" where the map knows no heights there.
+HeightRange required_ground(const MapView& map, const GridBox& box);
+/// As agl_above(). Throws the same, and InvalidInput "below-ground" where all of the ground is higher.
 AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m);
 
 /// `features`, as from `agl_m` above ground.

@@ -41,6 +41,9 @@ def _check_map(request, frame_fields, service):
         raise ValueError(f"the map '{request['map']}' shows nothing: its status is '{found['status']}'")
     _require_near(request, found["bbox"])
     status = "" if found["status"] == "ready" else f", {found['status']}"
+    if "takeoff_alt_m" in frame_fields and "terrain" not in found:
+        raise ValueError(f"--frame takeoff_alt_m: the map '{request['map']}' does not know how high its ground is: add "
+                         "heights with roadfix terrain, or give agl_m")
     heights = "" if "terrain" in found or not _leaves_height_to_lines(frame_fields) else \
         "; it does not know how high its ground is: lines of pictures need agl_m, alt_m alone will not do"
     print(f"the map '{request['map']}' has version {found.get('version')}{status}{heights}", file=sys.stderr)

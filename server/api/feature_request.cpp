@@ -10,6 +10,7 @@
 #include "core/detect/image_codec.hpp"
 #include "core/units/error.hpp"
 #include "core/units/words.hpp"
+#include "server/api/altitude_request.hpp"
 #include "server/api/base64.hpp"
 #include "server/api/frame_scale.hpp"
 #include "server/http/errors.hpp"
@@ -149,7 +150,7 @@ bool shows_ground(const Content& content) {
 bool is_frame(const Fields& fields) { return fields.choice("kind", kIsFrame); }
 
 void require_nothing_seen(const Fields& fields) {
-  for (const std::string& name : feature_fields()) {
+  for (const std::string& name : joined({feature_fields(), altitude_fields()})) {
     if (!fields.has(name)) continue;
     throw InvalidField("missing-parameter", "image",
                        fmt::format("'{}' describes a picture or a feature map, and there is none: send it, or leave "

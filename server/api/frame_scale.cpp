@@ -61,7 +61,7 @@ FrameCamera told_camera(const Fields& fields) {
 
 KnownView known_view(const Fields& fields) {
   return {told_agl_m(fields), fields.optional_angle("roll_deg", kQuarterTurn),
-          fields.optional_angle("pitch_deg", kQuarterTurn)};
+          fields.optional_angle("pitch_deg", kQuarterTurn), fields.optional_number(kTakeoffAgl, {})};
 }
 
 }  // namespace

@@ -20,6 +20,9 @@ const std::vector<std::string>& frame_scale_fields();
 /// Height above ground, where told. Throws InvalidField.
 std::optional<double> told_agl_m(const Fields& fields);
 
+/// A field that no client sends: KnownView::takeoff_agl_m of the request's photos, as take_altitude() sets it.
+inline constexpr const char* kTakeoffAgl = "takeoff_agl_m";
+
 /// `picture` are the bytes of the frame's file. Throws InvalidField, and what camera_of(DronePicture) throws.
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture);
 

@@ -18,8 +18,12 @@ namespace roadfix::server {
 namespace {
 
 std::vector<std::string> fix_fields() {
-  return joined(
-      {api::feature_fields(), api::prior_fields(), api::fix_option_fields(), api::position_fields(), {"time_us"}});
+  return joined({api::feature_fields(),
+                 api::altitude_fields(),
+                 api::prior_fields(),
+                 api::fix_option_fields(),
+                 api::position_fields(),
+                 {"time_us"}});
 }
 
 /// The frame was captured at time_us, or when the request came.
@@ -45,9 +49,10 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   const auto time_limit = api::parse_time_limit(content.fields);
   // Before the frame, which costs a turn among the searches.
   const PoseRegion region = search_region(map->view, prior, options);
-  const auto altitude = api::take_altitude(
-      content.fields, [&](double above_sea_m) { return required_agl(map->view, region.box, above_sea_m).middle_m(); });
+  auto altitude = api::take_altitude(
+      content, [&](double above_sea_m) { return required_agl(map->view, region.box, above_sea_m).middle_m(); });
   api::Features features = features_of(service, request, content, map->view);
+  if (!altitude) altitude = api::altitude_in_file(features);
   options.calibration = service.calibration;
   options.own_frame = std::move(features.own_frame);
   options.others = std::move(features.others);

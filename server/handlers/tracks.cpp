@@ -41,7 +41,7 @@ constexpr std::array<api::Media, 3> kHistoryFormats{{{"geojson", "application/ge
 std::string id_of(const http::Request& request) { return request.path_parameters.at("id"); }
 
 std::vector<std::string> step_query() {
-  return joined({api::step_fields(), api::feature_fields(), api::position_fields()});
+  return joined({api::step_fields(), api::feature_fields(), api::altitude_fields(), api::position_fields()});
 }
 
 /// Of a camera's picture as it was sent.
@@ -141,13 +141,15 @@ http::Response take_step(const Service& service, const http::Request& request, P
   }
   const api::TimeLimit limit(request.deadline);
   if (api::shows_ground(step.content)) {
-    step.sent.input.altitude = api::take_altitude(
-        step.content.fields, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
+    auto& altitude = step.sent.input.altitude;
+    altitude = api::take_altitude(
+        step.content, [&](double above_sea_m) { return service.tracks.live(track.id)->agl_m(above_sea_m); });
     const auto map = service.maps.find(track.map.name);
     const auto detector = service.detectors.for_map(map->view.imagery_reader);
     api::Features features = api::features_of(
         step.content, {.detector = *detector, .cell_m = map->view.cell_m, .stop = limit.token(), .sketched = true},
         service.limits);
+    if (!altitude) altitude = api::altitude_in_file(features);
     step.sent.input.picture = picture_of(step.content, features);
     step.sent.input.features = std::move(features.map);
     step.sent.detector = std::move(features.detector);

@@ -69,6 +69,24 @@ TEST_F(FramesCommand, MakesATableThatBenchReads) {
   EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).pitch.value().degrees(), 3.0);
 }
 
+TEST_F(FramesCommand, TellsHeightsAboveTheSeaWhereThatOfTheTakeOffIsTold) {
+  picture("0001.jpg", tags(118.0));
+  picture("0002.jpg", tags(-20.0));
+  std::string above_ground = tags(0.0);
+  picture("0003.jpg",
+          above_ground.replace(above_ground.find("drone-dji:Rel"), 34, "Camera:AboveGroundAltitude=\"90\""));
+  const ProgramResult result = frames(fmt::format("'{}' --csv '{}' --takeoff-alt 655.5", (folder / "flight 1").string(),
+                                                  (folder / "frames.csv").string()));
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto table = evaluation::parse_frames_csv(text_of(folder / "frames.csv"));
+  ASSERT_EQ(table.size(), 2U) << result.err;
+  EXPECT_EQ(table[0].alt_m, 773.5);
+  EXPECT_EQ(table[1].alt_m, 635.5) << "below the take-off there may be a valley";
+  EXPECT_THAT(result.err, AllOf(HasSubstr("0003.jpg is left out: its file does not tell its height above the take-off"),
+                                Not(HasSubstr("--takeoff-agl"))));
+  EXPECT_EQ(frames("x.jpg --takeoff-alt 655 --takeoff-agl 10").code, 2);
+}
+
 TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
   picture("good.jpg", tags(120.0));
   picture("bare.jpg", "");

@@ -12,10 +12,12 @@
 
 #include "core/detect/feature_map_codec.hpp"
 #include "core/geodesy/utm.hpp"
+#include "core/grid/terrain.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/store/map_writer.hpp"
 
 namespace roadfix::testing {
 
@@ -38,6 +40,12 @@ class LocalizeCommands : public ::testing::Test {
 
   void save_what_is_seen(const GridPose& pose, int side, const std::filesystem::path& file) const {
     save(encode_feature_map(what_is_seen(pose, side).cells), file);
+  }
+
+  void lay_level_ground(double height_m) const {
+    Terrain level = Terrain::unknown(GridGeometry::covering(town.geometry.box(), Terrain::kFinestCellM).padded(40));
+    for (std::uint16_t& code : level.codes) code = Terrain::code_of(height_m);
+    MapWriter(map, {zone, town.geometry.cell_m}).put_terrain(level, {.location = "dem.tif"});
   }
 
   ProgramResult roadfix(const std::string& arguments) const { return run_program(folder.path(), arguments); }

@@ -171,6 +171,45 @@ TEST_F(LocalizeCommands, FixSaysWhichCameraItReadFromAPhoto) {
   EXPECT_EQ(roadfix(of_photo + " --cell 2 --black-unseen").code, 2) << "says something of a frame, and there is none";
 }
 
+TEST_F(LocalizeCommands, FixMeasuresPhotosByTheGroundOfTheMapWhereThatOfTheirTakeOffIsTold) {
+  const auto save_photo = [&](const char* name, const std::string& height) {
+    cv::Mat pixels(400, 400, CV_8UC3);
+    cv::randu(pixels, 0, 255);
+    cv::GaussianBlur(pixels, pixels, {}, 4.0);
+    save(testing::drone_jpeg(pixels, height + R"(drone-dji:CalibratedFocalLength="346.41" )"
+                                              R"(drone-dji:GimbalYawDegree="0" drone-dji:GimbalPitchDegree="-90" )"
+                                              R"(drone-dji:GimbalRollDegree="0")"),
+         folder / "flight" / name);
+  };
+  std::filesystem::create_directory(folder / "flight");
+  save_photo("a.jpg", R"(drone-dji:RelativeAltitude="+300.00" )");
+  save_photo("b.jpg", R"(drone-dji:RelativeAltitude="+250.00" )");
+  save_photo("c.jpg", R"(Camera:AboveGroundAltitude="100" )");
+  const auto fix = [&](const std::string& name, const std::string& told) {
+    return roadfix("fix " + map.string() + " " + (folder / "flight").string() + "/" + name + " --exif --json " +
+                   at(place) + " --radius 100 " + told);
+  };
+  EXPECT_THAT(fix("", "--takeoff-alt 500").err, HasSubstr("roadfix: the map town does not know how high"));
+  lay_level_ground(700.0);
+  const auto by_takeoff = nlohmann::json::parse(fix("a.jpg", "--takeoff-alt 500").out);
+  const auto by_height = nlohmann::json::parse(fix("a.jpg", "--agl 100").out);
+  ASSERT_FALSE(by_takeoff["modes"].empty()) << by_takeoff;
+  EXPECT_NEAR(by_takeoff["modes"][0]["agl_m"].get<double>(), 100.0, 1e-6);
+  EXPECT_EQ(by_takeoff["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  const ProgramResult all = fix("", "--takeoff-alt 500");
+  EXPECT_EQ(all.code, 1);
+  std::istringstream lines(all.out);
+  for (const double agl_m : {100.0, 50.0}) {
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_NEAR(nlohmann::json::parse(line)["camera"]["agl_m"].get<double>(), agl_m, 1e-6) << "each has its own";
+  }
+  EXPECT_THAT(all.err, HasSubstr("c.jpg is left out: the picture's file does not tell its height above the take-off"));
+  EXPECT_THAT(fix("b.jpg", "--takeoff-alt 400").err, HasSubstr("[below-ground]"));
+  EXPECT_EQ(fix("a.jpg", "--takeoff-alt 500 --agl 100").code, 2);
+  EXPECT_EQ(roadfix("fix " + input + "--takeoff-alt 500").code, 2) << "of a feature map";
+}
+
 TEST_F(LocalizeCommands, FixMeasuresAFrameByTheGroundOfTheMapWhereItsHeightAboveTheSeaIsTold) {
   const std::string frame = folder / "frame.png";
   cv::Mat pixels(400, 400, CV_8UC3);
@@ -181,9 +220,7 @@ TEST_F(LocalizeCommands, FixMeasuresAFrameByTheGroundOfTheMapWhereItsHeightAbove
     return roadfix("fix " + map.string() + " " + frame + " --fov 60 --json " + at(place) + " --radius 100 " + height);
   };
   EXPECT_THAT(fix("--alt 1000").err, HasSubstr("[terrain-missing]"));
-  Terrain level = Terrain::unknown(GridGeometry::covering(town.geometry.box(), Terrain::kFinestCellM).padded(40));
-  for (std::uint16_t& code : level.codes) code = Terrain::code_of(700.0);
-  MapWriter(map, {zone, town.geometry.cell_m}).put_terrain(level, {.location = "dem.tif"});
+  lay_level_ground(700.0);
   EXPECT_THAT(fix("--alt 600").err, HasSubstr("[below-ground]"));
   const auto by_altitude = nlohmann::json::parse(fix("--alt 1000").out);
   const auto by_height = nlohmann::json::parse(fix("--agl 300").out);

@@ -15,6 +15,7 @@
 #include "core/detect/feature_map_codec.hpp"
 #include "core/units/error.hpp"
 #include "schema/schema.hpp"
+#include "server/api/altitude_request.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/fix_request.hpp"
 #include "server/api/flight_request.hpp"
@@ -140,6 +141,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   std::set<std::string> fix(api::feature_fields().begin(), api::feature_fields().end());
   fix.insert(api::flight_members().begin(), api::flight_members().end());
   std::set<std::string> match = fix;
+  fix.insert(api::altitude_fields().begin(), api::altitude_fields().end());
   fix.insert(api::prior_fields().begin(), api::prior_fields().end());
   fix.insert(api::fix_option_fields().begin(), api::fix_option_fields().end());
   fix.insert(api::position_fields().begin(), api::position_fields().end());
@@ -152,6 +154,7 @@ TEST_F(OpenApi, DocumentsEveryMemberOfAJsonBodyAndNoOther) {
   EXPECT_EQ(members("DetectRequest"), detect);
   EXPECT_EQ(members("TrackRequest"), std::set<std::string>(api::track_members().begin(), api::track_members().end()));
   std::set<std::string> step(api::feature_fields().begin(), api::feature_fields().end());
+  step.insert(api::altitude_fields().begin(), api::altitude_fields().end());
   step.insert(api::picture_members().begin(), api::picture_members().end());
   step.insert(api::step_fields().begin(), api::step_fields().end());
   step.insert(api::position_fields().begin(), api::position_fields().end());

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/e2e/served_town.hpp"
+#include "tests/support/drone_jpeg.hpp"
 #include "tests/support/encoded.hpp"
 #include "tests/support/eventually.hpp"
 
@@ -73,6 +74,45 @@ TEST_F(ServiceAltitude, IsRefusedWhereItCannotBe) {
   EXPECT_EQ(fix("town", "&alt_m=1000")["code"], "terrain-missing");
   EXPECT_EQ(fix("high", "&alt_m=699")["code"], "below-ground");
   EXPECT_EQ(fix("high", "")["code"], "missing-parameter");
+}
+
+/// 300 m above its take-off.
+std::string photo_of(const cv::Mat& pixels) {
+  return testing::text_of(testing::drone_jpeg(
+      pixels, R"(drone-dji:RelativeAltitude="+300.00" drone-dji:CalibratedFocalLength="346.41" )"
+              R"(drone-dji:GimbalYawDegree="0" drone-dji:GimbalPitchDegree="-90" drone-dji:GimbalRollDegree="0")"));
+}
+
+TEST_F(ServiceAltitude, OfAPhotoFollowsFromThatOfItsTakeOff) {
+  const std::string photo = photo_of(pixels_);
+  const auto fix_photo = [&](const std::string& map, const std::string& told) {
+    const std::string prior =
+        "&lat=" + std::to_string(town->place.lat_deg) + "&lon=" + std::to_string(town->place.lon_deg) + "&radius_m=100";
+    const std::string path = "/v1/maps/" + map + "/fix?kind=frame&exif=true" + prior + told;
+    return testing::json_of(client_.Post(path.c_str(), photo, "image/jpeg"));
+  };
+  const json by_takeoff = fix_photo("high", "&takeoff_alt_m=500");
+  const json by_height = fix_photo("high", "&agl_m=100");
+  ASSERT_FALSE(by_takeoff["modes"].empty()) << by_takeoff;
+  EXPECT_NEAR(by_takeoff["camera"]["agl_m"].get<double>(), 100.0, 1e-6) << "200 m below the ground of the map";
+  EXPECT_NEAR(by_takeoff["modes"][0]["agl_m"].get<double>(), 100.0, 1e-6);
+  EXPECT_EQ(by_takeoff["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  EXPECT_EQ(fix_photo("high", "")["camera"]["agl_m"], 300.0) << "the ground is taken to be as high as the take-off";
+  EXPECT_EQ(fix_photo("town", "&takeoff_alt_m=500")["code"], "terrain-missing");
+  EXPECT_EQ(fix_photo("high", "&takeoff_alt_m=399")["code"], "below-ground");
+  EXPECT_EQ(fix_photo("high", "&takeoff_alt_m=500&agl_m=100")["field"], "takeoff_alt_m");
+}
+
+TEST_F(ServiceAltitude, OfThePhotosOfATrackFollowsFromThatOfTheirTakeOff) {
+  const json asked{{"map", "high"}, {"lat", town->place.lat_deg}, {"lon", town->place.lon_deg}, {"radius_m", 100}};
+  const json track = testing::json_of(client_.Post("/v1/tracks", asked.dump(), "application/json"));
+  const std::string steps = "/v1/tracks/" + track["id"].get<std::string>() + "/steps?takeoff_alt_m=500";
+  const std::string seen = steps + "&kind=frame&exif=true&sequence=1&time_us=1";
+  const json step = testing::json_of(client_.Post(seen.c_str(), photo_of(pixels_), "image/jpeg"));
+  EXPECT_NEAR(step["agl_m"].get<double>(), 100.0, 1e-6) << step;
+  const std::string unseen = steps + "&sequence=2&time_us=2";
+  EXPECT_EQ(testing::json_of(client_.Post(unseen.c_str(), "{}", "application/json"))["code"], "missing-parameter")
+      << "a photo that was forgotten";
 }
 
 TEST_F(ServiceAltitude, GivesTheStepsOfATrackTheirsAboveTheGroundBelow) {

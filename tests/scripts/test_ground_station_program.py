@@ -82,6 +82,15 @@ class BeforeTheFlight(unittest.TestCase):
                     self.assertEqual(status, 0)
                     self.assertEqual("lines of pictures need agl_m, alt_m alone will not do" in words, is_said, frame)
 
+    def test_a_height_of_the_take_off_is_refused_where_the_map_knows_no_heights(self):
+        photos = ("--frame", "exif=true", "takeoff_alt_m=655")
+        for terrain, expected in (({}, 1), ({"terrain": {"lowest_m": 500.0, "highest_m": 518.0}}, 0)):
+            with FakeService() as fake:
+                fake.map = (200, {**fake.map[1], **terrain})
+                status, words = self.checked(fake, *photos)
+                self.assertEqual(status, expected)
+                self.assertEqual("does not know how high its ground is" in words, expected == 1)
+
     def test_what_no_track_can_begin_with_is_told_by_a_check(self):
         for refusal, words in (((400, {"code": "missing-parameter", "detail": "'lon' is missing"}),
                                 "ground_station: --track: 400 missing-parameter: 'lon' is missing"),

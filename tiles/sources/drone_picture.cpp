@@ -215,6 +215,13 @@ void set_lens(DronePicture& picture, const PictureTags& tags) {
   throw InvalidInput("camera-not-in-file", fmt::format("the picture's file does not tell {}", lacks_and_advice));
 }
 
+/// 0 where nobody tells it.
+double agl_of(const DronePicture& picture, const KnownView& known) {
+  if (known.agl_m) return *known.agl_m;
+  if (known.takeoff_agl_m) return required_takeoff_m(picture) + *known.takeoff_agl_m;
+  return picture.agl_m.value_or(picture.takeoff_m.value_or(0.0));
+}
+
 }  // namespace
 
 DronePicture drone_picture(const PictureTags& tags) {
@@ -226,6 +233,13 @@ DronePicture drone_picture(const PictureTags& tags) {
   set_attitude(picture, tags.xmp);
   set_lens(picture, tags);
   return picture;
+}
+
+double required_takeoff_m(const DronePicture& picture) {
+  if (picture.takeoff_m) return *picture.takeoff_m;
+  refuse(
+      "its height above the take-off (RelativeAltitude): give its height above ground (--agl or agl_m) in place of how "
+      "high the take-off lay");
 }
 
 FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
@@ -245,7 +259,7 @@ FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
   camera.focal_px = picture.focal_px;
   camera.principal_px = picture.principal_px;
   camera.distortion = picture.distortion;
-  camera.agl_m = known.agl_m.value_or(picture.agl_m.value_or(picture.takeoff_m.value_or(0.0)));
+  camera.agl_m = agl_of(picture, known);
   if (camera.agl_m <= 0.0) refuse("a height above ground (RelativeAltitude or AboveGroundAltitude): give it besides");
   camera.roll = known.roll ? known.roll : picture.roll;
   camera.pitch = known.pitch ? known.pitch : picture.pitch;

@@ -42,12 +42,17 @@ struct KnownView {
   std::optional<double> agl_m;
   std::optional<Angle> roll;
   std::optional<Angle> pitch;
+  /// How much higher the place of the take-off lies than the ground below; of use without `agl_m`.
+  std::optional<double> takeoff_agl_m = {};
 };
 
+/// Height above the place of the take-off. Throws InvalidInput "camera-not-in-file" where none is told.
+double required_takeoff_m(const DronePicture& picture);
+
 /// The camera that took it, with its roll and pitch. Where only the height above the take-off is told, the ground below
-/// is taken to be as high as that place. Throws InvalidInput "camera-not-in-file" that says what is missing,
-/// "camera-contradictory" where the file tells two focal lengths that differ, and "camera-zoomed" where the camera
-/// enlarged what it saw.
+/// is taken to be as high as that place, unless it is known how much lower. Throws InvalidInput "camera-not-in-file"
+/// that says what is missing, "camera-contradictory" where the file tells two focal lengths that differ, and
+/// "camera-zoomed" where the camera enlarged what it saw.
 FrameCamera camera_of(const DronePicture& picture, const KnownView& known);
 
 }  // namespace roadfix

@@ -26,6 +26,7 @@ await run({
   },
   'a photo tells of its camera itself, and a size of the ground in per cent is told as a share'() {
     assert.deepEqual(asked({ what: 'exif', agl_m: '', scale_percent: '15' }), { kind: 'frame', exif: 'true', scale_range: '0.15' });
+    assert.deepEqual(asked({ what: 'exif', agl_m: '', takeoff_alt_m: '655' }), { kind: 'frame', exif: 'true', takeoff_alt_m: '655' });
   },
   'a place to look around is the middle of the view, on the side of the 180th meridian that the service has'() {
     assert.deepEqual(asked({ what: 'gsd', gsd_m: '0.5', prior: 'circle', radius_m: '1000' }),

@@ -171,6 +171,15 @@ TEST(DronePicture, IsAsHighAsItIsToldOrElseAboveTheGroundOrElseAboveTheTakeOff) 
   EXPECT_EQ(agl_m(70.0), 70.0);
 }
 
+TEST(DronePicture, IsHigherAboveGroundThatLiesLowerThanItsTakeOff) {
+  DronePicture picture = drone_picture({{{"EXIF_FocalLengthIn35mmFilm", "24"}}, {}, kSize});
+  const KnownView known{{}, Angle(), Angle(), 30.0};
+  picture.agl_m = 81.0;
+  EXPECT_EQ(testing::code_of([&] { camera_of(picture, known); }), "camera-not-in-file") << "higher than what?";
+  picture.takeoff_m = -12.0;
+  EXPECT_EQ(camera_of(picture, known).agl_m, 18.0);
+}
+
 TEST(DronePicture, LookedWhereItIsToldOrElseWhereItsFileSays) {
   const DronePicture picture = drone_picture({{{"EXIF_FocalLengthIn35mmFilm", "24"}},
                                               {{"Camera:Yaw", "0"}, {"Camera:Pitch", "3"}, {"Camera:Roll", "-2"}},

@@ -163,16 +163,32 @@ void look_at(const FrameTruth& frame, Query& query, const QuerySet& set, const M
   }
 }
 
-/// `views` are those of the frames so far, in their order; nullptr where one cannot be read.
-std::vector<EarlierFrame> frames_before(std::size_t index, const std::vector<FrameTruth>& frames, const QuerySet& set,
-                                        const UtmZone& zone, const std::vector<SharedView>& views) {
+/// Whether it was seen from above the ground that is below the reference, if that is as high everywhere.
+bool is_above_ground(const std::optional<Altitude>& altitude, const std::optional<Altitude>& reference) {
+  if (!altitude || !altitude->above_sea_m || !reference || !reference->above_sea_m) return true;
+  return *altitude->above_sea_m > *reference->above_sea_m - reference->agl_m;
+}
+
+/// What a frame shows, and from where; nullptr where it cannot be read.
+struct LookedAt {
+  SharedView view;
+  std::optional<Altitude> altitude;
+};
+
+/// `looked_at`: the frames so far, in their order, the one that is asked about last.
+std::vector<EarlierFrame> frames_before(const std::vector<FrameTruth>& frames, const QuerySet& set, const UtmZone& zone,
+                                        const std::vector<LookedAt>& looked_at) {
   std::vector<EarlierFrame> earlier;
+  std::size_t index = looked_at.size() - 1;
   const FrameTruth& reference = frames[index];
+  const auto& altitude = looked_at[index].altitude;
   while (index > 0 && static_cast<int>(earlier.size()) + 1 < set.together) {
     const FrameTruth& frame = frames[--index];
-    if (frame.sequence != reference.sequence || !views[index]) continue;  // flights may take turns in the file
+    const LookedAt& looked = looked_at[index];
+    if (frame.sequence != reference.sequence || !looked.view) continue;  // flights may take turns in the file
+    if (!is_above_ground(looked.altitude, altitude)) continue;
     const BodyOffset offset = offset_from(on_grid(reference.pose, zone), on_grid(frame.pose, zone));
-    earlier.push_back({views[index], offset});
+    earlier.push_back({looked.view, offset, looked.altitude});
   }
   return earlier;
 }
@@ -200,8 +216,7 @@ void require_places_near(const MapView& map, const std::vector<FrameTruth>& fram
                                                           set.path.string(), described(*far), map.id.name, kAdvice));
 }
 
-/// By which a frame that tells its height above the sea gets its size. That of frames together would be another one for
-/// each.
+/// By which a frame that tells its height above the sea gets its size.
 void require_heights(const MapView& map, const std::vector<FrameTruth>& frames, const QuerySet& set) {
   const auto told = std::ranges::find_if(frames, [](const FrameTruth& frame) { return frame.alt_m.has_value(); });
   if (told == frames.end()) return;
@@ -211,11 +226,12 @@ void require_heights(const MapView& map, const std::vector<FrameTruth>& frames, 
                                    "agl_m, or name elevation models in the \"terrain\" of the map",
                                    set.path.string(), told->file.string(), map.id.name));
   }
-  if (set.together > 1) {
+  const auto other = std::ranges::find_if(frames, [](const FrameTruth& frame) { return !frame.alt_m; });
+  if (set.together > 1 && other != frames.end()) {
     throw InvalidInput("frames-without-size",
-                       fmt::format("{}: {} has alt_m, and frames are combined in the size that they have: give agl_m, "
-                                   "or leave out \"together\"",
-                                   set.path.string(), told->file.string()));
+                       fmt::format("{}: {} has alt_m and {} has not, so that nobody knows how much higher one of them "
+                                   "was: give all of them alt_m, or leave out \"together\"",
+                                   set.path.string(), told->file.string(), other->file.string()));
   }
 }
 
@@ -225,7 +241,7 @@ DrawnQueries real_frames(const QuerySet& set, const MapView& map, const RoadDete
   require_places_near(map, frames, set);
   require_heights(map, frames, set);
   DrawnQueries drawn;
-  std::vector<SharedView> views;
+  std::vector<LookedAt> looked_at;
   for (int i = 0; i < number_of(static_cast<int>(frames.size()), drawing); ++i) {
     const FrameTruth& frame = frames[static_cast<std::size_t>(i)];
     Random random = stream(drawing.seed, drawing.set, static_cast<std::uint64_t>(i));
@@ -235,11 +251,11 @@ DrawnQueries real_frames(const QuerySet& set, const MapView& map, const RoadDete
     tell_prior(query, set.elsewhere ? anywhere_on(map, random) : map.zone.project(frame.pose.position),
                frame.pose.heading, set, map, random);
     look_at(frame, query, set, map, detector, drawn.left_out);
-    views.push_back(query.view);
+    looked_at.push_back({query.view, query.altitude});
     if (!query.view) continue;
     query.scale_range = set.prior_scale_range;
     const UtmZone zone = set.elsewhere ? UtmZone::containing(frame.pose.position) : map.zone;
-    query.earlier = frames_before(static_cast<std::size_t>(i), frames, set, zone, views);
+    query.earlier = frames_before(frames, set, zone, looked_at);
     drawn.queries.push_back(std::move(query));
   }
   return drawn;

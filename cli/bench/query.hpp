@@ -24,6 +24,7 @@ using SharedView = std::shared_ptr<const GroundView>;
 struct EarlierFrame {
   SharedView view;
   BodyOffset offset;
+  std::optional<Altitude> altitude;  ///< as Query::altitude
 };
 
 struct Query {

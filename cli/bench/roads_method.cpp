@@ -12,6 +12,7 @@
 #include "cli/limits.hpp"
 #include "core/detect/frame.hpp"
 #include "core/grid/combine.hpp"
+#include "core/grid/resample.hpp"
 #include "core/locate/levelled_fix.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/told_frames.hpp"
@@ -58,6 +59,17 @@ struct Parts {
   std::vector<PlacedFeatures> features;
   double detection_ms = 0.0;
 };
+
+/// As if it had been made for the altitude of the query, raised by how much higher the frame was taken.
+PlacedFeatures placed_in(const Query& query, const EarlierFrame& frame, const FeatureMap& features) {
+  if (!query.altitude || !frame.altitude) return {features, frame.offset};
+  const Altitude& of_query = *query.altitude;
+  const Altitude& own = *frame.altitude;
+  if (!of_query.above_sea_m) return {features, frame.offset, own.agl_m - of_query.agl_m};
+  const double higher_m = own.above_sea_m.value() - *of_query.above_sea_m;
+  const FeatureMap sized = seen_from(features, own, of_query.agl_m + higher_m);
+  return {resampled(sized, features.cell_m), frame.offset, higher_m};
+}
 
 class RoadsMethod : public Method {
  public:
@@ -116,13 +128,15 @@ class RoadsMethod : public Method {
   Parts parts_of(const Query& query) const {
     if (query.features) return {{{*query.features, {}}}};
     Parts parts;
-    const auto add = [&](const SharedView& view, const BodyOffset& offset) {
+    const auto detected_in = [&](const SharedView& view) {
       const Detected part = detected(view);
-      parts.features.push_back({part.features, offset});
       parts.detection_ms += part.time_ms;
+      return part.features;
     };
-    add(query.view, {});
-    for (const EarlierFrame& frame : query.earlier) add(frame.view, frame.offset);
+    parts.features.push_back({detected_in(query.view), {}});
+    for (const EarlierFrame& frame : query.earlier) {
+      parts.features.push_back(placed_in(query, frame, detected_in(frame.view)));
+    }
     return parts;
   }
 

@@ -105,25 +105,46 @@ class BenchRunOfACamera : public BenchRun {
  protected:
   BenchRunOfACamera() { take_frame(); }
 
-  void take_frame(const std::optional<Relief>& relief = {}) const {
+  void take_frame(const std::optional<Relief>& relief = {}) const { take_frame("oblique.png", truth, 250.0, relief); }
+  void take_frame(const char* name, const GridPose& pose, double agl_m, const std::optional<Relief>& relief) const {
     FrameCamera camera;
     camera.focal_px = 400.0;
-    camera.agl_m = 250.0;
+    camera.agl_m = agl_m;
     camera.roll = Angle::degrees(-5);
     camera.pitch = Angle::degrees(8);
     camera.distortion = {-0.2, 0.05, 0.0, 0.0};
-    cv::imwrite(folder / "oblique.png", taken_over(cv::imread(folder / "town.png"), truth, camera, {500, 400}, relief));
+    cv::imwrite(folder / name, taken_over(cv::imread(folder / "town.png"), pose, camera, {500, 400}, relief));
   }
+
+  struct Described {
+    const char* name;
+    GridPose pose;
+    double height_m;
+  };
 
   /// `height`: the name of its column.
   void describe_frame(const std::string& height, double height_m) const {
+    describe_frames(height, {{"oblique.png", truth, height_m}});
+  }
+  void describe_frames(const std::string& height, const std::vector<Described>& frames) const {
     const UtmZone zone = UtmZone::from_epsg(32634).value();
-    const LatLon at = zone.unproject(truth.position);
-    std::ofstream(folder / "oblique.csv")
-        << std::setprecision(10) << "file,lat,lon,heading_deg," << height << ",focal_px,roll_deg,pitch_deg,distortion\n"
-        << "oblique.png," << at.lat_deg << ',' << at.lon_deg << ','
-        << zone.true_from_grid(truth.heading, truth.position).degrees() << ',' << height_m
-        << ",400,-5,8,-0.2 0.05 0 0\n";
+    std::ofstream csv(folder / "oblique.csv");
+    csv << std::setprecision(10) << "file,lat,lon,heading_deg," << height
+        << ",focal_px,roll_deg,pitch_deg,distortion\n";
+    for (const auto& [name, pose, height_m] : frames) {
+      const LatLon at = zone.unproject(pose.position);
+      csv << name << ',' << at.lat_deg << ',' << at.lon_deg << ','
+          << zone.true_from_grid(pose.heading, pose.position).degrees() << ',' << height_m
+          << ",400,-5,8,-0.2 0.05 0 0\n";
+    }
+  }
+
+  /// The ground of write_elevation_model().
+  Terrain slope() const {
+    return testing::SlopingGround{grown({truth.position, truth.position}, 2000.0),
+                                  height_m({truth.position.east_m - 2000.0, 0.0}),
+                                  height_m({truth.position.east_m + 2000.0, 0.0})}
+        .terrain();
   }
 
   const GridPose truth{{400330.0, 3999620.0}, Angle::degrees(40)};
@@ -146,10 +167,7 @@ TEST_F(BenchRunOfACamera, PlacesTheUavByItsHeightAboveTheSeaWhereTheMapKnowsThat
   describe_frame("agl_m", 250.0);
   const double rho = run(kQueries, R"("roads")").at(0).outcomes.at(0).answer.rho_at_truth.value();
   write_elevation_model("dem.asc");
-  const testing::SlopingGround slope{grown({truth.position, truth.position}, 2000.0),
-                                     height_m({truth.position.east_m - 2000.0, 0.0}),
-                                     height_m({truth.position.east_m + 2000.0, 0.0})};
-  const Terrain terrain = slope.terrain();
+  const Terrain terrain = slope();
   take_frame(Relief(terrain, truth, 250.0));
   describe_frame("alt_m", height_m(truth.position) + 250.0);
   for (const char* prior : {R"("map")", R"({"radius_m": 200})"}) {
@@ -162,23 +180,56 @@ TEST_F(BenchRunOfACamera, PlacesTheUavByItsHeightAboveTheSeaWhereTheMapKnowsThat
   }
 }
 
+TEST_F(BenchRunOfACamera, LaysFramesTogetherThatWereTakenFromSeveralHeightsOverASlope) {
+  constexpr const char* kQueries = R"({"map": "town", "frames": "oblique.csv", "together": 2})";
+  const GridPose before = moved(truth, {-70.0, 30.0, Angle::degrees(20.0)});
+  const double higher_m = 150.0;
+  const double above_sea_m = height_m(truth.position) + 250.0;
+  const double agl_before_m = above_sea_m + higher_m - height_m(before.position);
+  take_frame("before.png", before, agl_before_m, {});
+  describe_frames("agl_m", {{"before.png", before, agl_before_m}, {"oblique.png", truth, 250.0}});
+  const double rho = run(kQueries, R"("roads")").at(0).outcomes.at(1).answer.rho_at_truth.value();
+
+  write_elevation_model("dem.asc");
+  const Terrain terrain = slope();
+  take_frame("before.png", before, agl_before_m, Relief(terrain, before, agl_before_m));
+  take_frame(Relief(terrain, truth, 250.0));
+  const auto expect_found = [&] {
+    const auto results = run(kQueries, R"("roads")", R"("dem.asc")");
+    const Outcome& outcome = results.at(0).outcomes.at(1);
+    EXPECT_LT(outcome.error_m.value(), 5.0);
+    EXPECT_NEAR(outcome.answer.rho_at_truth.value(), rho, 0.04);
+  };
+  expect_found();
+  describe_frames("alt_m", {{"before.png", before, above_sea_m + higher_m}, {"oblique.png", truth, above_sea_m}});
+  expect_found();
+}
+
 TEST_F(BenchRunOfACamera, LeavesOutFramesWhoseHeightAboveTheSeaTellsNothing) {
   std::vector<std::string> left_out;
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
-  const auto why_left_out = [&](double alt_m, const std::string& more, const std::string& terrain) {
+  const auto why_left_out = [&](double alt_m, const std::string& terrain) {
     describe_frame("alt_m", alt_m);
     left_out.clear();
-    EXPECT_TRUE(run(R"({"map": "town", "frames": "oblique.csv")" + more + "}", R"("roads")", terrain).empty());
+    EXPECT_TRUE(run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads")", terrain).empty());
     return left_out;
   };
   write_elevation_model("dem.asc");
-  EXPECT_THAT(why_left_out(397.0, "", ""),
+  EXPECT_THAT(why_left_out(397.0, ""),
               ElementsAre(AllOf(HasSubstr("oblique.png has alt_m, and the map 'town' does not know how high"),
                                 HasSubstr("[terrain-missing]"))));
-  EXPECT_THAT(why_left_out(397.0, R"(, "together": 2)", R"("dem.asc")"),
-              ElementsAre(HasSubstr("[frames-without-size]")));
-  EXPECT_THAT(why_left_out(20.0, "", R"("dem.asc")"),
+  EXPECT_THAT(why_left_out(20.0, R"("dem.asc")"),
               ElementsAre(AllOf(HasSubstr("oblique.png: at 20 m above the sea"), HasSubstr("[below-ground]"))));
+  const LatLon at = UtmZone::from_epsg(32634).value().unproject(truth.position);
+  std::ofstream mixed(folder / "mixed.csv");
+  mixed << std::setprecision(10) << "file,lat,lon,heading_deg,agl_m,alt_m,fov_deg\n";
+  for (const char* heights : {",397", "250,"}) {
+    mixed << "oblique.png," << at.lat_deg << ',' << at.lon_deg << ",0," << heights << ",60\n";
+  }
+  mixed.close();
+  left_out.clear();
+  EXPECT_TRUE(run(R"({"map": "town", "frames": "mixed.csv", "together": 2})", R"("roads")", R"("dem.asc")").empty());
+  EXPECT_THAT(left_out, ElementsAre(HasSubstr("[frames-without-size]")));
 }
 
 TEST_F(BenchRunOfFrames, CountsAFrameBeyondTheMapAsNotFoundWhateverIsToldOfItsPlace) {

@@ -2,7 +2,7 @@
 // is what the HTTP interface offers to any program.
 import { hashOf, shownBy } from './address.js';
 import { Answer } from './answer.js';
-import { choiceOf, linesOf, stepTo } from './maps.js';
+import { choiceOf, heightsOf, linesOf, stepTo } from './maps.js';
 import { Places } from './places.js';
 import { queryOf } from './question.js';
 import { Route } from './route.js';
@@ -44,9 +44,10 @@ async function drawMap() {
   tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
   }).on('tileerror', askAgain).addTo(view);
-  shown = { name: info.name, version: info.version, bbox: info.bbox };
+  shown = { name: info.name, version: info.version, bbox: info.bbox, heights: heightsOf(info) };
   by('about').replaceChildren(
     element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),
+    element('div', shown.heights),
     ...info.sources.map((s) => element('div', [s.name, s.kind, s.date, s.licence].filter(Boolean).join(' · '))));
   return info;
 }

@@ -29,13 +29,21 @@ export function linesOf(maps, chosen) {
 /// Boxes in degrees: [west, south, east, north].
 const meet = (a, b) => a[0] <= b[2] && b[0] <= a[2] && a[1] <= b[3] && b[1] <= a[3];
 
+/// What a map says of the heights of its ground.
+export function heightsOf({ terrain }) {
+  if (!terrain) return 'heights of the ground not known';
+  const share = terrain.known_share < 1 ? `, known on ${Math.floor(100 * terrain.known_share)} % of it` : '';
+  return `ground ${Math.round(terrain.lowest_m)} to ${Math.round(terrain.highest_m)} m above the sea${share}`;
+}
+
 /// What is to be done on the page: 'open' another map, or one of elsewhere that has taken the name of the shown one;
-/// 'redraw' the same one, whose content changed; or nothing.
-/// `shown` is the map on the page ({name, version, bbox}) or null, and its version null while it is being opened.
+/// 'redraw' the same one, whose content or heights changed; or nothing.
+/// `shown` is the map on the page ({name, version, bbox, heights}, the last by heightsOf) or null, and its version null
+/// while it is being opened.
 export function stepTo(maps, chosen, shown) {
   const map = maps.find(({ name }) => name === chosen);
   if (!map || !usable(map)) return null;
   if (shown?.name !== chosen) return 'open';
-  if (shown.version === null || shown.version === map.version) return null;
+  if (shown.version === null || (shown.version === map.version && shown.heights === heightsOf(map))) return null;
   return meet(shown.bbox, map.bbox) ? 'redraw' : 'open';
 }

@@ -78,6 +78,18 @@ await run({
     assert.deepEqual(tiles(), ['/v1/maps/town/tiles/{z}/{x}/{y}.png?version=2']);
     assert.equal(view.box, null);
   },
+  async 'what the map knows of the heights of its ground is told, and told anew when that changes'() {
+    assert.match(by('about').textContent, /heights of the ground not known/);
+    const terrain = { lowest_m: 500, highest_m: 518, known_share: 1 };
+    service.answers['/v1/maps'] = { maps: [{ ...listed('town', '2'), terrain }] };
+    service.answers['/v1/maps/town'] = { ...description('town', '2'), terrain };
+    await acts.focus();
+    assert.match(by('about').textContent, /ground 500 to 518 m above the sea/);
+    service.answers['/v1/maps'] = { maps: [listed('town', '2')] };
+    service.answers['/v1/maps/town'] = description('town', '2');
+    await acts.focus();
+    assert.match(by('about').textContent, /heights of the ground not known/);
+  },
   async 'a height above the sea is asked for of a camera over a map that knows the heights of its ground'() {
     const asksFor = () => [agl, alt].map(({ disabled }) => !disabled);
     const choose = async (name) => {

@@ -4,7 +4,7 @@ import { readFileSync } from 'node:fs';
 
 // As a data: URL, since node takes a .js file outside of a package for no module.
 const text = readFileSync(process.argv[2], 'utf8');
-const { choiceOf, linesOf, stepTo } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+const { choiceOf, heightsOf, linesOf, stepTo } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
 
 const ready = (name, version = '1', bbox = [38, 37, 39, 38]) => ({ name, version, status: 'ready', bbox });
 const texts = (maps, chosen) => linesOf(maps, chosen).map((line) => line.text);
@@ -42,11 +42,23 @@ const cases = {
     assert.equal(stepTo([ready('a')], 'a', null), 'open');
     assert.equal(stepTo([ready('a')], 'a', { name: 'b', version: '1' }), 'open');
     assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: null }), null);
-    assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: '1' }), null);
+    assert.equal(stepTo([ready('a')], 'a', { name: 'a', version: '1', heights: heightsOf({}) }), null);
     assert.equal(stepTo([ready('a', '2')], 'a', { name: 'a', version: '1', bbox: [38, 37, 38.5, 38] }), 'redraw');
     assert.equal(stepTo([], 'a', { name: 'a', version: '1' }), null);
     assert.equal(stepTo([], null, null), null);
     assert.equal(stepTo([{ name: 'a', version: '2', status: 'unreadable' }], 'a', { name: 'a', version: '1' }), null);
+  },
+  'a map tells the heights of its ground, and is drawn anew when they come, change or go'() {
+    const terrain = { lowest_m: 501.7, highest_m: 518.2, known_share: 1 };
+    assert.equal(heightsOf({ terrain }), 'ground 502 to 518 m above the sea');
+    assert.equal(heightsOf({ terrain: { ...terrain, known_share: 0.478 } }), 'ground 502 to 518 m above the sea, known on 47 % of it');
+    assert.equal(heightsOf({}), 'heights of the ground not known');
+    const step = (was, now) => stepTo([{ ...ready('a'), ...now }], 'a', { ...ready('a'), heights: heightsOf(was) });
+    assert.equal(step({}, {}), null);
+    assert.equal(step({ terrain }, { terrain }), null);
+    assert.equal(step({}, { terrain }), 'redraw');
+    assert.equal(step({ terrain }, { terrain: { ...terrain, highest_m: 700 } }), 'redraw');
+    assert.equal(step({ terrain }, {}), 'redraw');
   },
   'a map that is replaced by one of elsewhere is opened, so that the view goes there'() {
     const shown = { name: 'a', version: '1', bbox: [38, 37, 39, 38] };

@@ -94,6 +94,16 @@ std::vector<double> scores_of(std::span<const LatticePose> poses) {
   return scores;
 }
 
+/// Few places compete for what lies around a region where that is a strip along its border, so the poorest are followed
+/// too. Where the tail of chance begins is known from the region alone then.
+std::span<const LatticePose> comparable_around(const RankedPoses& poses) {
+  const std::span<const LatticePose> around(poses.around);
+  if (around.size() >= poses.inside.size()) return around;
+  const double poorest = poses.inside.back().score;
+  const auto poorer = std::ranges::find_if(around, [&](const LatticePose& pose) { return pose.score < poorest; });
+  return around.first(static_cast<std::size_t>(poorer - around.begin()));
+}
+
 }  // namespace
 
 RankedPoses::RankedPoses(const SearchLevels& levels, const std::vector<LatticePose>& poses) {
@@ -110,8 +120,8 @@ void set_rivals(const SearchLevels& levels, const SearchScan& scan, const Search
   const std::size_t count = tiny ? 2 * kSurvivors : kSurvivors;
   const std::span<const LatticePose> inside(poses.inside);
   background.rivals_within = scores_of(inside.subspan(std::min<std::size_t>(1, inside.size())));
-  std::ranges::merge(background.rivals_within, scores_of(poses.around), std::back_inserter(background.rivals),
-                     std::ranges::greater{});
+  std::ranges::merge(background.rivals_within, scores_of(comparable_around(poses)),
+                     std::back_inserter(background.rivals), std::ranges::greater{});
   background.rivals.resize(std::min(background.rivals.size(), count));
   const double all = poses_of(scan.scanned());
   background.region_share = all > 0.0 ? std::clamp(poses_of(levels.region()) / all, 1e-6, 1.0) : 1.0;

@@ -90,5 +90,19 @@ TEST_F(SearchSurroundings, TellOfChanceAsTheyDoOfALargerRegion) {
   EXPECT_LT(small.background.region_share, 0.02);
 }
 
+/// Of a camera that leans far: from beyond the map's edge it sees ground of the map, so a strip along the edge competes
+/// with the whole region.
+TEST_F(SearchSurroundings, DoNotTellWhereTheTailOfChanceBeginsIfTheyAreAStrip) {
+  FeatureMap leaning = window_;
+  leaning.nadir.row += 192.0;
+  PoseRegion whole;
+  whole.box = map_.geometry.box();
+  SearchOptions options;
+  options.surroundings = whole.box;
+  const ScoreBackground chance = search(testing::reader_of(map_), 2.0, leaning, whole, options).background;
+  ASSERT_GT(chance.rivals_within.size(), 50U);
+  EXPECT_GE(chance.rivals.back(), chance.rivals_within.back());
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <variant>
 
@@ -11,6 +12,20 @@
 #include "core/units/error.hpp"
 
 namespace roadfix {
+namespace {
+
+/// How far from the nadir ground is looked at. An attitude that is off by `a` moves what lies d from there by a d^2 / h
+/// more than the ground below: far ground would contradict near ground.
+double farthest_ground_m(double agl_m) {
+  constexpr double kFarthestM = 3000.0;
+  constexpr double kFarthestHeights = 5.0;  // farther away the angle is too flat to see roads
+  constexpr double kSeenByAll = 1.5;        // heights: the corners of what wide lenses see straight below
+  constexpr double kMostMovedM = 10.0;      // about as wide as streets
+  const double moved_m = std::sqrt(kMostMovedM * agl_m / kToldAttitudeSigma.radians());
+  return std::min(kFarthestM, std::clamp(moved_m, kSeenByAll * agl_m, kFarthestHeights * agl_m));
+}
+
+}  // namespace
 
 void require_roads_visible(double gsd_m) {
   if (gsd_m < kFinestGsdM) {
@@ -27,17 +42,13 @@ void require_roads_visible(double gsd_m) {
 }
 
 GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels) {
-  // Farther away the angle is too flat to see roads.
-  constexpr double kFarthestGroundM = 3000.0;
-  constexpr double kFarthestHeights = 5.0;
   const double nominal_m = nominal_gsd_m(view, frame.pixels.size());
   require_roads_visible(nominal_m);
   exclude_painted_border(frame);
   GroundView seen;
   if (const auto* camera = std::get_if<FrameCamera>(&view)) {
     const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-    const double farthest_m = std::min(kFarthestGroundM, kFarthestHeights * camera->agl_m);
-    seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_m, max_pixels});
+    seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_ground_m(camera->agl_m), max_pixels});
   } else {
     seen = vertical_view({std::move(frame.pixels), std::move(frame.observed), nominal_m});
   }

@@ -40,9 +40,10 @@ cv::Rect2d seen_ground(const FrameCamera& camera, const Lens& lens, cv::Size siz
   if (!any) {
     throw InvalidInput(
         "frame-sees-no-ground",
-        fmt::format(
-            "frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the frame shows no ground within {:.0f} m",
-            camera.assumed_roll().degrees(), camera.assumed_pitch().degrees(), max_range_m));
+        fmt::format("frame: with a roll of {:.1f} and a pitch of {:.1f} degrees the frame shows no ground within "
+                    "{:.0f} m of the point below, and what is farther off is placed too roughly: let the camera look "
+                    "down more steeply",
+                    camera.assumed_roll().degrees(), camera.assumed_pitch().degrees(), max_range_m));
   }
   return {low, high};
 }

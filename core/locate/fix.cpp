@@ -61,8 +61,9 @@ void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const FixOpt
     refuse_place(
         fix, "halves-contradict",
         fmt::format("the roads fit best at one place, but the {} half of the frame does not fit there by itself: "
-                    "part of the picture may be older than the rest, or not of the ground; leave out frames that "
-                    "the decoder reports as damaged, and paint black what covers the ground",
+                    "part of the picture may be older than the rest, or not of the ground, or it is laid out wrongly; "
+                    "leave out frames that the decoder reports as damaged, paint black what covers the ground, and "
+                    "check the lens and, of a camera that leans, roll and pitch",
                     half));
   }
 }

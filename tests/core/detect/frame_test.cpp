@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/core/detect/level_camera.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -42,18 +44,31 @@ TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
   EXPECT_EQ(testing::code_of([&] { gsd_at(2000.0); }), "frame-too-coarse");
 }
 
-TEST(GroundSeen, ReachesFiveHeightsFarWhereTheHorizonIsInTheFrame) {
-  const HalfMetreDetector detector;
+/// How far ahead a camera sees that has the horizon in the frame.
+double reach_m(double agl_m) {
   cv::Mat pixels(kFrame, CV_8UC1);
   cv::randu(pixels, 0, 255);
   FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(60);
-  for (const double agl_m : {60.0, 120.0, 300.0}) {
-    camera.agl_m = agl_m;
-    const GroundView view = ground_seen({pixels, cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))}, camera, detector, 4e7);
-    EXPECT_NEAR(view.nadir_px.y * view.image.gsd_m, 5.0 * agl_m, 2.0);
-    EXPECT_LE(view.image.pixels.cols * view.image.gsd_m, 10.0 * agl_m + 2.0);
+  camera.agl_m = agl_m;
+  const HalfMetreDetector detector;
+  const GroundView view = ground_seen({pixels, cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))}, camera, detector, 4e7);
+  EXPECT_LE(view.image.pixels.cols * view.image.gsd_m, 2.0 * view.nadir_px.y * view.image.gsd_m + 2.0);
+  return view.nadir_px.y * view.image.gsd_m;
+}
+
+TEST(GroundSeen, ReachesAsFarAsADegreeOfPitchMovesItHardlyMoreThanTheGroundBelow) {
+  for (const double agl_m : {30.0, 60.0, 120.0}) {
+    const double far_m = reach_m(agl_m);
+    const double degree = Angle::degrees(1.0).radians();
+    const double moved_m = agl_m * (std::tan(std::atan(far_m / agl_m) + degree) - std::tan(degree)) - far_m;
+    EXPECT_NEAR(moved_m, 10.0, 1.0) << agl_m;
   }
+}
+
+TEST(GroundSeen, ReachesFiveHeightsAtMostAndOneAndAHalfAtLeast) {
+  EXPECT_NEAR(reach_m(15.0), 75.0, 1.0);
+  EXPECT_NEAR(reach_m(400.0), 600.0, 2.0);
 }
 
 TEST(GroundSeen, HasNoPaintedBorderAndNoBlankGround) {

@@ -192,7 +192,7 @@ Decision decide(const SearchResult& found, const PoseRegion& region, const Calib
     explain_by_chance(
         decision, bare,
         "the best place fits no better than chance allows among so many places: use a larger footprint or a "
-        "narrower prior; the UAV may not be over this map");
+        "narrower prior; the UAV may not be over this map, or its height or camera is told wrongly");
   }
   return decision;
 }

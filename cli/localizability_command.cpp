@@ -11,6 +11,7 @@
 #include "cli/map_notes.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
+#include "cli/place_kinds.hpp"
 #include "cli/route_input.hpp"
 #include "cli/route_report.hpp"
 #include "cli/terminal.hpp"
@@ -61,14 +62,14 @@ void print_text(const MapView& map, const SurveyOptions& options, const MapSurve
   fmt::print("{}: {:.1f} km2 of ground, for frames that show {:g} m of it; asked at places: {}{}\n", map.id.name,
              ground_km2, options.query.footprint_m, found.places(),
              found.places() < kFewPlaces ? ", too few for more than a rough idea" : "");
-  const auto line = [&](const char* word, std::int64_t places, const char* meaning) {
+  const auto line = [&](PlaceKind kind, std::int64_t places) {
     const double part = share(found, places);
-    fmt::print("  {:<9} {:3.0f} %  {:6.1f} km2  {}\n", word, 100.0 * part, part * ground_km2, meaning);
+    fmt::print("  {:<9} {:3.0f} %  {:6.1f} km2  {}\n", word_of(api::kPlaceKinds, kind), 100.0 * part, part * ground_km2,
+               word_of(kMeanings, kind));
   };
-  line("distinct", found.distinct, "a frame gives a fix");
-  line("sparse", found.sparse,
-       "its roads fit elsewhere, too, or are too few to be sure: no fix, but a track may go on");
-  line("bare", found.bare, "it shows hardly any road: no fix, and a track has odometry alone");
+  line(PlaceKind::kDistinct, found.distinct);
+  line(PlaceKind::kSparse, found.sparse);
+  line(PlaceKind::kBare, found.bare);
 }
 
 void survey_map(const LocalizabilityArguments& arguments, const MapView& map, SurveyOptions options) {

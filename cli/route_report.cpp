@@ -2,18 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <array>
-
+#include "cli/place_kinds.hpp"
 #include "server/api/route_json.hpp"
 
 namespace roadfix::cli {
 namespace {
-
-constexpr std::array<Word<PlaceKind>, 4> kMeanings{
-    {{"a frame gives a fix", PlaceKind::kDistinct},
-     {"its roads fit elsewhere, too, or are too few to be sure: no fix, but a track may go on", PlaceKind::kSparse},
-     {"it shows hardly any road: no fix, and a track has odometry alone", PlaceKind::kBare},
-     {"half or more of it is not on the map: odometry alone", PlaceKind::kUnknown}}};
 
 std::string place_text(LatLon place) { return fmt::format("{:.6f} {:.6f}", place.lat_deg, place.lon_deg); }
 

@@ -64,7 +64,13 @@ Way way_on(const MapView& map, std::span<const LatLon> route) {
   std::vector<GridPoint> points;
   for (const LatLon place : route) {
     const auto point = map.zone.project_if_defined(place);
-    if (!point) refuse_outside(map);
+    if (!point) {
+      throw InvalidInput(
+          "route-outside-map",
+          fmt::format("the route leads to {:.4f} {:.4f}, a part of the world away from the map {}: check "
+                      "that they belong together",
+                      place.lat_deg, place.lon_deg, map.id.name));
+    }
     points.push_back(*point);
   }
   Way way(std::move(points));
@@ -130,7 +136,7 @@ std::int64_t RouteSurvey::count(PlaceKind kind) const { return std::ranges::coun
 std::optional<double> RouteSurvey::first_fix_m() const {
   const auto fix = std::ranges::find(pieces, PlaceKind::kDistinct, &RoutePiece::kind);
   if (fix == pieces.end()) return std::nullopt;
-  return piece_m * static_cast<double>(fix - pieces.begin());
+  return begin_m(fix - pieces.begin());
 }
 
 IndexRange RouteSurvey::longest_without_fix() const {

@@ -41,14 +41,15 @@ struct RouteSurvey {
   /// Whether they lead to the end of the route.
   bool complete() const;
   std::int64_t count(PlaceKind kind) const;
-  /// Until a frame gives a fix, from the first of these pieces; nullopt if none does.
+  /// Where along the route the first of these pieces begins that gives a fix; nullopt if none does.
   std::optional<double> first_fix_m() const;
   /// The most pieces in a row none of which is distinct; the first of equal ones. Empty where all are.
   IndexRange longest_without_fix() const;
 };
 
 /// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, and
-/// InvalidInput "route-outside-map" where no piece lies within the box of the map, "route-without-length",
+/// InvalidInput "route-outside-map" where no piece lies within the box of the map or a place lies where its zone is not
+/// defined, "route-without-length",
 /// "parameter-out-of-range" where `from_m` lies beyond its end.
 RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options);
 

@@ -105,6 +105,7 @@ TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
   EXPECT_EQ(kinds_of(found), (std::vector{kBare, kUnknown, kUnknown}));
   EXPECT_TRUE(found.complete());
   EXPECT_NEAR(found.begin_m(0), 400.0, 0.01);
+  EXPECT_FALSE(found.first_fix_m());
   EXPECT_NEAR(found.begin_m(3), 1600.0, 0.01);
   rest.limit = 2;
   const RouteSurvey part = survey_route(map, route, rest);
@@ -113,6 +114,16 @@ TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
   EXPECT_NEAR(part.begin_m(2), 1200.0, 0.01) << "where to go on";
   rest.from_m = 1600.0;
   EXPECT_EQ(code_of([&] { survey_route(map, route, rest); }), "parameter-out-of-range");
+}
+
+TEST(RouteSurvey, TellsPlacesAlongTheWholeRouteWhereverItBegan) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions rest = options();
+  rest.from_m = 800.0;
+  const RouteSurvey found = survey_route(map, route_of(map, {{1200, 400}, {0, 400}}), rest);
+  EXPECT_EQ(kinds_of(found), std::vector{kDistinct});
+  ASSERT_TRUE(found.first_fix_m());
+  EXPECT_NEAR(*found.first_fix_m(), 800.0, 0.01);
 }
 
 TEST(RouteSurvey, EndsAtTheDeadlineWithWhatItHas) {

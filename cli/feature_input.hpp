@@ -36,10 +36,9 @@ class FeatureInput {
   FeatureInput(const FeatureInputOptions& options, const MapView& map);
 
   /// Roads of a frame come in the map's cells; several frames (--also) are laid together. `takeoff_agl_m`: of photos,
-  /// see KnownView. Throws InvalidInput
-  /// "input-kind-missing" where a feature map does not say so itself and no option does. Says on standard error which
-  /// of several were left out, and where another detector than reads frames found the roads of feature maps, once of
-  /// each.
+  /// see KnownView. Throws InvalidInput "input-kind-missing" where a feature map does not say so itself and no option
+  /// does. Says on standard error which of several were left out, and where another detector than reads frames found
+  /// the roads of feature maps, once of each.
   api::Features read(const std::string& path, std::optional<double> takeoff_agl_m = {});
 
  private:

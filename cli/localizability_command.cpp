@@ -62,14 +62,12 @@ void print_text(const MapView& map, const SurveyOptions& options, const MapSurve
   fmt::print("{}: {:.1f} km2 of ground, for frames that show {:g} m of it; asked at places: {}{}\n", map.id.name,
              ground_km2, options.query.footprint_m, found.places(),
              found.places() < kFewPlaces ? ", too few for more than a rough idea" : "");
-  const auto line = [&](PlaceKind kind, std::int64_t places) {
-    const double part = share(found, places);
-    fmt::print("  {:<9} {:3.0f} %  {:6.1f} km2  {}\n", word_of(api::kPlaceKinds, kind), 100.0 * part, part * ground_km2,
-               word_of(kMeanings, kind));
+  const auto print_line = [&](PlaceKind kind, std::int64_t places) {
+    fmt::print("{}", kind_line(kind, share(found, places), ground_km2, "km2"));
   };
-  line(PlaceKind::kDistinct, found.distinct);
-  line(PlaceKind::kSparse, found.sparse);
-  line(PlaceKind::kBare, found.bare);
+  print_line(PlaceKind::kDistinct, found.distinct);
+  print_line(PlaceKind::kSparse, found.sparse);
+  print_line(PlaceKind::kBare, found.bare);
 }
 
 void survey_map(const LocalizabilityArguments& arguments, const MapView& map, SurveyOptions options) {

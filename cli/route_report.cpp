@@ -25,10 +25,8 @@ std::string longest_text(const RouteSurvey& survey) {
 std::string route_text(const RouteSurvey& survey, const std::string& route, double footprint_m) {
   std::string text = fmt::format("{}: {:.1f} km, for frames that show {:g} m of ground; asked every {:.0f} m\n", route,
                                  survey.length_m / 1e3, footprint_m, survey.piece_m);
-  for (const auto& [word, kind] : api::kPlaceKinds) {
-    const double part = api::share_of(survey, kind);
-    text += fmt::format("  {:<9} {:3.0f} %  {:6.1f} km  {}\n", word, 100.0 * part, part * survey.length_m / 1e3,
-                        word_of(kMeanings, kind));
+  for (const PlaceKind kind : {PlaceKind::kDistinct, PlaceKind::kSparse, PlaceKind::kBare, PlaceKind::kUnknown}) {
+    text += kind_line(kind, api::share_of(survey, kind), survey.length_m / 1e3, "km");
   }
   if (const auto first = survey.first_fix_m(); first && *first > 0.0) {
     text += fmt::format("  first fix after {:.1f} km\n", *first / 1e3);

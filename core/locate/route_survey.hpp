@@ -49,8 +49,7 @@ struct RouteSurvey {
 
 /// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, and
 /// InvalidInput "route-outside-map" where no piece lies within the box of the map or a place lies where its zone is not
-/// defined, "route-without-length",
-/// "parameter-out-of-range" where `from_m` lies beyond its end.
+/// defined, "route-without-length", "parameter-out-of-range" where `from_m` lies beyond its end.
 RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options);
 
 }  // namespace roadfix

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/routes/mav_command.hpp"
+#include "core/routes/mission_way.hpp"
 #include "core/routes/route_json.hpp"
 
 namespace roadfix::routes {
@@ -24,6 +24,16 @@ LatLon coordinate(const JsonField& field) {
   return place_in(numbers, 0);
 }
 
+/// Of a simple item; nullopt where its command is for the place where the vehicle is.
+std::optional<LatLon> place_of(const JsonField& item) {
+  constexpr std::size_t kLatitude = 4;
+  const JsonField params = item.at("params");
+  const std::vector<JsonField> numbers = params.elements();
+  if (numbers.size() < kLatitude + 2) params.refuse("has to hold seven numbers");
+  if (numbers[kLatitude].is_null() || numbers[kLatitude + 1].is_null()) return std::nullopt;
+  return place_in(numbers, kLatitude);
+}
+
 /// The commands of which surveys and corridors are made.
 std::vector<JsonField> transects_of(const JsonField& item) {
   if (!item.has("TransectStyleComplexItem")) return {};
@@ -34,15 +44,15 @@ std::vector<JsonField> transects_of(const JsonField& item) {
 class PlanReader {
  public:
   explicit PlanReader(const JsonField& mission) : mission_(mission) {
-    if (mission.has("plannedHomePosition")) home_ = coordinate(mission.at("plannedHomePosition"));
-    if (home_ && !is_told(*home_)) home_.reset();
-    if (home_) route_.places.push_back(*home_);
+    if (mission.has("plannedHomePosition")) {
+      way_ = MissionWay::from_home(coordinate(mission.at("plannedHomePosition")));
+    }
   }
 
   Route read() && {
     int number = 0;
     for (const JsonField& item : mission_.at("items").elements()) add_item(item, ++number);
-    return std::move(route_);
+    return {way_.places(), std::move(left_out_)};
   }
 
  private:
@@ -55,16 +65,7 @@ class PlanReader {
   }
 
   void add_command(const JsonField& item) {
-    const std::int64_t command = item.at("command").whole_number(0.0, kMostCommands);
-    if (command == kReturnToLaunch && home_) route_.places.push_back(*home_);
-    if (!leads_somewhere(command)) return;
-    constexpr std::size_t kLatitude = 4;
-    const JsonField params = item.at("params");
-    const std::vector<JsonField> numbers = params.elements();
-    if (numbers.size() < kLatitude + 2) params.refuse("has to hold seven numbers");
-    if (numbers[kLatitude].is_null() || numbers[kLatitude + 1].is_null()) return;  // where it is
-    const LatLon place = place_in(numbers, kLatitude);
-    if (is_told(place)) route_.places.push_back(place);
+    way_.follow(item.at("command").whole_number(0.0, kMostCommands), [&] { return place_of(item); });
   }
 
   void add_pattern(const JsonField& item, int number) {
@@ -73,18 +74,16 @@ class PlanReader {
     if (!transects.empty()) {
       for (const JsonField& part : transects) add_command(part);
     } else if (item.has("landCoordinate")) {
-      if (item.has("landingApproachCoordinate")) {
-        route_.places.push_back(coordinate(item.at("landingApproachCoordinate")));
-      }
-      route_.places.push_back(coordinate(item.at("landCoordinate")));
+      if (item.has("landingApproachCoordinate")) way_.fly_to(coordinate(item.at("landingApproachCoordinate")));
+      way_.fly_to(coordinate(item.at("landCoordinate")));
     } else {
-      route_.left_out.push_back(fmt::format("item {}, a {}: the plan does not say which way it leads", number, kind));
+      left_out_.push_back(fmt::format("item {}, a {}: the plan does not say which way it leads", number, kind));
     }
   }
 
   const JsonField mission_;
-  std::optional<LatLon> home_;
-  Route route_;
+  MissionWay way_;
+  std::vector<std::string> left_out_;
 };
 
 }  // namespace

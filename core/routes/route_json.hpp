@@ -1,7 +1,6 @@
 // What the readers of routes share.
 #pragma once
 
-#include "core/geodesy/latlon.hpp"
 #include "core/units/json_file.hpp"
 
 namespace roadfix::routes {
@@ -14,8 +13,5 @@ inline const JsonFile kRouteJson{
 
 inline double latitude_of(const JsonField& number) { return number.number(-90.0, 90.0); }
 inline double longitude_of(const JsonField& number) { return number.number(-180.0, 180.0); }
-
-/// Autopilots take both as 0 for a place that is not told.
-inline bool is_told(LatLon place) { return place.lat_deg != 0.0 || place.lon_deg != 0.0; }
 
 }  // namespace roadfix::routes

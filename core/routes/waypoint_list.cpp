@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
-#include "core/routes/mav_command.hpp"
+#include "core/routes/mission_way.hpp"
 #include "core/routes/route_json.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
@@ -43,43 +44,29 @@ LatLon place_of(const std::vector<double>& numbers, std::size_t line_number) {
                                  line_number, place.lat_deg, place.lon_deg));
 }
 
-class ListReader {
- public:
-  void add_line(std::string_view line, std::size_t line_number) {
-    const std::vector<double> numbers = numbers_of(line, line_number);
-    if (numbers.empty()) return;
-    if (numbers.size() < kNumbers) {
-      throw InvalidInput(kRouteUnreadable,
-                         fmt::format("line {} has {} numbers: a waypoint has twelve", line_number, numbers.size()));
-    }
-    const auto command = std::llround(std::clamp(numbers[kCommand], 0.0, 65'535.0));
-    if (command == kReturnToLaunch && home_) route_.places.push_back(*home_);
-    if (!leads_somewhere(command)) return;
-    const LatLon place = place_of(numbers, line_number);
-    if (!is_told(place)) return;
-    if (!home_) home_ = place;
-    route_.places.push_back(place);
+void add_line(std::string_view line, std::size_t line_number, MissionWay& way) {
+  const std::vector<double> numbers = numbers_of(line, line_number);
+  if (numbers.empty()) return;
+  if (numbers.size() < kNumbers) {
+    throw InvalidInput(kRouteUnreadable,
+                       fmt::format("line {} has {} numbers: a waypoint has twelve", line_number, numbers.size()));
   }
-
-  const Route& route() const { return route_; }
-
- private:
-  std::optional<LatLon> home_;
-  Route route_;
-};
+  const auto command = std::llround(std::clamp(numbers[kCommand], 0.0, 65'535.0));
+  way.follow(command, [&] { return std::optional(place_of(numbers, line_number)); });
+}
 
 }  // namespace
 
 bool is_waypoint_list(std::string_view text) { return text.starts_with(kBegin); }
 
 Route parse_waypoint_list(std::string_view text) {
-  ListReader reader;
+  MissionWay way = MissionWay::from_first_place();
   std::size_t line_number = 0;
   for (std::string_view line : split(text, '\n')) {
     if (line.ends_with('\r')) line.remove_suffix(1);
-    if (++line_number > 1) reader.add_line(line, line_number);
+    if (++line_number > 1) add_line(line, line_number, way);
   }
-  return reader.route();
+  return {way.places(), {}};
 }
 
 }  // namespace roadfix::routes

@@ -132,8 +132,9 @@ std::optional<api::PlaceAnswer> searched(const Service& service, const http::Req
   if (!found.complete) {
     throw Interrupted("request-deadline", "the time limit ended before the tile was complete; ask again");
   }
-  if (found.observed_share < kMinObservedShare) return std::nullopt;
-  return api::PlaceAnswer{found.status == FixStatus::kFix, found.probability};
+  const PlaceKind kind = kind_of(found);
+  if (kind == PlaceKind::kUnknown) return std::nullopt;
+  return api::PlaceAnswer{kind == PlaceKind::kDistinct, found.probability};
 }
 
 /// What the tiles of all maps share.

@@ -13,13 +13,14 @@
 namespace roadfix {
 namespace {
 
+using testing::counted;
+using testing::query_of_a_third;
 using testing::town_fields_and_unknown_ground;
 using testing::view_of;
 
 SurveyOptions options() {
   SurveyOptions options;
-  options.query.footprint_m = 400.0;
-  options.query.radius_m = 500.0;
+  options.query = query_of_a_third();
   return options;
 }
 
@@ -28,10 +29,7 @@ TEST(MapSurvey, TellsGroundThatGivesAFixFromBareAndUnknownGround) {
   SurveyOptions all = options();
   all.threads = 2;
   std::int64_t told = 0;
-  all.progress = [&](std::int64_t done, std::int64_t total) {
-    EXPECT_EQ(done, ++told);
-    EXPECT_EQ(total, 4);
-  };
+  all.progress = counted(told, 4);
   const MapSurvey found = survey(map, all);
   EXPECT_EQ(told, 4);
   EXPECT_EQ(found.distinct, 2);

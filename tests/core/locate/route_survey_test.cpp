@@ -11,6 +11,8 @@ namespace roadfix {
 namespace {
 
 using testing::code_of;
+using testing::counted;
+using testing::query_of_a_third;
 using testing::town_fields_and_unknown_ground;
 
 /// The map's box is 1200 x 800 m, of which the western 800 m are observed.
@@ -26,8 +28,7 @@ std::vector<LatLon> route_of(const MapView& map, const std::vector<GridPoint>& f
 
 RouteSurveyOptions options() {
   RouteSurveyOptions options;
-  options.query.footprint_m = 400.0;
-  options.query.radius_m = 500.0;
+  options.query = query_of_a_third();
   options.every_m = 400.0;
   return options;
 }
@@ -45,10 +46,7 @@ TEST(RouteSurvey, TellsWhereAFlightHasFixesAndHowLongItGoesWithoutOne) {
   RouteSurveyOptions two_at_a_time = options();
   two_at_a_time.threads = 2;
   std::int64_t told = 0;
-  two_at_a_time.progress = [&](std::int64_t done, std::int64_t total) {
-    EXPECT_EQ(done, ++told);
-    EXPECT_EQ(total, 8);
-  };
+  two_at_a_time.progress = counted(told, 8);
   // Eastwards over town, fields and what is not known, out of the map, and back over the fields to the town.
   const RouteSurvey found =
       survey_route(map, route_of(map, {{0, 400}, {1600, 400}, {1600, 400}, {0, 400}}), two_at_a_time);

@@ -9,6 +9,7 @@ namespace roadfix::cli {
 // through cli/terminal. It reports failure by throwing; main turns exceptions into one line on stderr and exit code 1.
 
 void add_bench_command(CLI::App& app);
+void add_boresight_command(CLI::App& app);
 void add_detect_command(CLI::App& app);
 void add_export_command(CLI::App& app);
 void add_fix_command(CLI::App& app);

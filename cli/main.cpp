@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_fix_command(app);
   roadfix::cli::add_fly_command(app);
   roadfix::cli::add_frames_command(app);
+  roadfix::cli::add_boresight_command(app);
   roadfix::cli::add_world_command(app);
   roadfix::cli::add_serve_command(app);
   try {

@@ -12,6 +12,7 @@
 #include "cli/bench/quality.hpp"
 #include "cli/bench/query_poses.hpp"
 #include "cli/bench/told_prior.hpp"
+#include "cli/evaluation/frame_altitude.hpp"
 #include "cli/evaluation/frame_files.hpp"
 #include "cli/evaluation/random.hpp"
 #include "core/detect/frame_camera.hpp"
@@ -135,16 +136,6 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   return at_poses(sampling, from.zone, "simulated", show, set, map, drawing);
 }
 
-/// As `fix` with the query's prior, by --agl or --alt; nullopt where the frame tells no height.
-std::optional<Altitude> altitude_of(const FrameTruth& frame, const Query& query, const MapView& map) {
-  const auto* camera = std::get_if<FrameCamera>(&frame.view);
-  if (camera == nullptr) return std::nullopt;
-  if (!frame.alt_m) return Altitude{std::nullopt, camera->agl_m};
-  return said_of(frame.file.string(), [&] {
-    return Altitude{frame.alt_m, required_agl(map, region_of(map, query.prior).box, *frame.alt_m).middle_m()};
-  });
-}
-
 SharedView seen_in(FrameTruth frame, const std::optional<Altitude>& altitude, const QuerySet& set,
                    const RoadDetector& detector) {
   if (altitude) std::get<FrameCamera>(frame.view).agl_m = altitude->agl_m;
@@ -155,7 +146,7 @@ SharedView seen_in(FrameTruth frame, const std::optional<Altitude>& altitude, co
 void look_at(const FrameTruth& frame, Query& query, const QuerySet& set, const MapView& map,
              const RoadDetector& detector, std::vector<std::string>& left_out) {
   try {
-    query.altitude = altitude_of(frame, query, map);
+    query.altitude = evaluation::altitude_of(frame, query.prior, map);
     query.view = seen_in(frame, query.altitude, set, detector);
   } catch (const Error& error) {
     if (!is_about_input(error)) throw;

@@ -13,6 +13,7 @@
 #include "core/locate/told_frames.hpp"
 #include "tests/cli/bench/bench_run.hpp"
 #include "tests/support/sloping_ground.hpp"
+#include "tests/support/taken_over.hpp"
 
 namespace roadfix::bench {
 namespace {
@@ -81,25 +82,6 @@ TEST_F(BenchRunOfFrames, GivesNoFixWhereTheCameraHasStopped) {
   EXPECT_EQ(results[0].outcomes[2].answer.status, FixStatus::kNoFix);
 }
 
-/// What a camera above a place of the plane takes of the town, whose picture begins at (400000, 4000000), on ground of
-/// that relief.
-cv::Mat taken_over(const cv::Mat& town, const GridPose& pose, const FrameCamera& camera, cv::Size size,
-                   const std::optional<Relief>& relief = {}) {
-  const Lens lens = lens_of(camera, size);
-  cv::Mat places(size, CV_32FC2);
-  for (int row = 0; row < size.height; ++row) {
-    for (int col = 0; col < size.width; ++col) {
-      cv::Point2d ground = ground_of(camera, lens.ray_of({col + 0.5, row + 0.5}).value()).value();
-      if (relief) ground /= relief->stretch_at(ground.x, ground.y);
-      const GridPoint at = moved(pose, {-ground.y, ground.x, {}}).position;
-      places.at<cv::Point2f>(row, col) = cv::Point2d(at.east_m - 400000.0 - 0.5, 4000000.0 - at.north_m - 0.5);
-    }
-  }
-  cv::Mat frame;
-  cv::remap(town, frame, places, {}, cv::INTER_LINEAR, cv::BORDER_CONSTANT);
-  return frame;
-}
-
 /// One frame of a tilted camera with a distorting lens, 250 m above a place where the town lies to all sides.
 class BenchRunOfACamera : public BenchRun {
  protected:
@@ -113,7 +95,8 @@ class BenchRunOfACamera : public BenchRun {
     camera.roll = Angle::degrees(-5);
     camera.pitch = Angle::degrees(8);
     camera.distortion = {-0.2, 0.05, 0.0, 0.0};
-    cv::imwrite(folder / name, taken_over(cv::imread(folder / "town.png"), pose, camera, {500, 400}, relief));
+    const Orthoimage town{{cv::imread(folder / "town.png"), {}, 1.0}, {400000.0, 4000000.0}};
+    cv::imwrite(folder / name, testing::taken_over(town, pose, camera, {500, 400}, relief));
   }
 
   struct Described {

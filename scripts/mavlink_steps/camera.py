@@ -2,6 +2,8 @@
 would be fixed, the upper edge of its picture ahead."""
 import math
 
+FLATTEST = math.radians(80.0)  # from straight down: the service takes no picture that looks beyond
+
 
 def _angles(forward, right_down, down_down):
     """Of axes in ones that are level: that ahead, and how far those to the right and down point down."""
@@ -9,16 +11,29 @@ def _angles(forward, right_down, down_down):
             math.atan2(forward[1], forward[0]))
 
 
-def turned(attitude, yaw):
-    """Of a camera that is turned in such an airframe about its downward axis, clockwise seen from above."""
-    roll, pitch, heading = attitude
+def _rotation(roll, pitch, yaw):
+    """Its columns are the axes ahead, to the right and down of an airframe of that attitude."""
     cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
     cy, sy = math.cos(yaw), math.sin(yaw)
-    # Forward and right of the camera in axes that are level and point to the heading; down stays as it is.
-    forward = (cy * cp + sy * sr * sp, sy * cr, -cy * sp + sy * sr * cp)
-    right_down = sy * sp + cy * sr * cp
-    camera_roll, camera_pitch, camera_yaw = _angles(forward, right_down, cr * cp)
+    return ((cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr),
+            (sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr),
+            (-sp, cp * sr, cp * cr))
+
+
+def turned(attitude, mount):
+    """Of a camera in such an airframe that is not fixed straight to its floor, but turned against it, by a yaw about
+    the downward axis (clockwise seen from above), by a pitch about its right axis, and by a roll about the one ahead."""
+    roll, pitch, heading = attitude
+    body = _rotation(roll, pitch, 0.0)
+    forward, right, down = (tuple(sum(a * b for a, b in zip(row, axis)) for row in body)
+                            for axis in zip(*_rotation(*mount)))
+    camera_roll, camera_pitch, camera_yaw = _angles(forward, right[2], down[2])
     return camera_roll, camera_pitch, heading + camera_yaw
+
+
+def lean(roll, pitch):
+    """How far such a camera looks from straight down."""
+    return math.acos(max(-1.0, min(1.0, math.cos(roll) * math.cos(pitch))))
 
 
 def in_gimbal(quaternion, heading):

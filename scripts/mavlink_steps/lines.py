@@ -58,7 +58,8 @@ class Lines:
             attitude = self._gimbal.camera_at(captured, attitude[2])
         elif self._options.camera == "level":
             attitude = (0.0, 0.0, attitude[2])
-        return turned(attitude, math.radians(self._options.camera_yaw))
+        mount = (self._options.camera_roll, self._options.camera_pitch, self._options.camera_yaw)
+        return turned(attitude, tuple(map(math.radians, mount)))
 
     def _step(self, path, captured):
         """Throws Unknown."""

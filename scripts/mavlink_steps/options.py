@@ -3,7 +3,10 @@ import argparse
 import math
 import uuid
 
+from camera import FLATTEST, lean
 from gimbal import STATUS
+
+FLATTEST_DEG = math.degrees(FLATTEST)
 
 
 def parse_address(text):
@@ -25,6 +28,14 @@ def parse_delay(text):
     if delay_s < 0.0:
         raise argparse.ArgumentTypeError(f"'{text}': no picture is written before it was taken")
     return delay_s
+
+
+def parse_lean(text):
+    angle_deg = parse_number(text)
+    if abs(angle_deg) > FLATTEST_DEG:
+        raise argparse.ArgumentTypeError(f"'{text}': at most {FLATTEST_DEG:g} degrees from straight down, which is 0: "
+                                         "the -90 of a gimbal is a pitch of 0")
+    return angle_deg
 
 
 def parse_interval(text):
@@ -54,6 +65,11 @@ def _add_camera(parser):
     parser.add_argument("--camera-yaw", type=parse_number, default=0.0, metavar="DEGREES",
                         help="where the picture's upper edge points, clockwise from the nose, or from where "
                              "a gimbal says that it points (default: 0)")
+    parser.add_argument("--camera-pitch", type=parse_lean, default=0.0, metavar="DEGREES",
+                        help="how far the camera is tilted towards that edge from where it would look, straight down "
+                             "through the floor, straight down, or where a gimbal says (default: 0)")
+    parser.add_argument("--camera-roll", type=parse_lean, default=0.0, metavar="DEGREES",
+                        help="the same, of its right side down: it looks farther to the left (default: 0)")
 
 
 def _add_heights(parser):
@@ -77,10 +93,19 @@ def _add_pictures(parser):
                              "some)")
 
 
+def _check_lean(parser, options):
+    lean_deg = math.degrees(lean(math.radians(options.camera_roll), math.radians(options.camera_pitch)))
+    if lean_deg > FLATTEST_DEG:
+        parser.error(f"--camera-pitch {options.camera_pitch:g} and --camera-roll {options.camera_roll:g} are together "
+                     f"{lean_deg:.1f} degrees from straight down: at most {FLATTEST_DEG:g}")
+
+
 def parse_arguments(description, arguments):
     parser = argparse.ArgumentParser(prog="mavlink_steps", description=description,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     for add in (_add_vehicle, _add_pictures, _add_camera, _add_heights):
         add(parser)
     parser.set_defaults(origin=uuid.uuid4().hex)  # sums of velocities begin anew with each start
-    return parser.parse_args(arguments)
+    options = parser.parse_args(arguments)
+    _check_lean(parser, options)
+    return options

@@ -10,7 +10,7 @@ from words import said
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
-from camera import in_gimbal, turned  # noqa: E402
+from camera import in_gimbal, lean, turned  # noqa: E402
 from gimbal import STATUS, Gimbal  # noqa: E402
 from packets import Message  # noqa: E402
 from vehicle import Unknown  # noqa: E402
@@ -32,7 +32,7 @@ def about(axis, angle):
 def product(*matrices):
     result, *others = matrices
     for other in others:
-        result = tuple(tuple(sum(row[k] * other[k][j] for k in range(3)) for j in range(3)) for row in result)
+        result = tuple(tuple(sum(a * b for a, b in zip(row, column)) for column in zip(*other)) for row in result)
     return result
 
 
@@ -60,18 +60,63 @@ def heard(*messages, device=None):
     return gimbal
 
 
+def ground_of(roll, pitch, yaw, right, back):
+    """How far to the north and east of a vehicle 1 m above ground a ray of core/detect/frame_camera.cpp ends, by its
+    matrices: axes right, back and down, level = pitch * roll."""
+    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
+    level = product(((1, 0, 0), (0, cp, -sp), (0, sp, cp)), ((cr, 0, -sr), (0, 1, 0), (sr, 0, cr)),
+                    ((right,), (back,), (1.0,)))
+    right_m, ahead_m = level[0][0] / level[2][0], -level[1][0] / level[2][0]
+    return (math.cos(yaw) * ahead_m - math.sin(yaw) * right_m, math.sin(yaw) * ahead_m + math.cos(yaw) * right_m)
+
+
 class Cameras(unittest.TestCase):
+    def assert_matrices_alike(self, actual, expected):
+        for row, other in zip(actual, expected):
+            for a, b in zip(row, other):
+                self.assertAlmostEqual(a, b, places=9)
+
     def test_that_are_turned_in_the_airframe_have_the_attitude_of_both_rotations(self):
         draw = random.Random(3)
         for _ in range(300):
             attitude = (draw.uniform(-1.4, 1.4), draw.uniform(-1.4, 1.4), draw.uniform(-9, 9))
-            yaw = draw.uniform(-4, 4)
-            expected = product(rotation(*attitude), about(2, yaw))
-            actual = rotation(*turned(attitude, yaw))
-            for row, other in zip(actual, expected):
-                for a, b in zip(row, other):
-                    self.assertAlmostEqual(a, b, places=9)
+            mount = (draw.uniform(-1.4, 1.4), draw.uniform(-1.4, 1.4), draw.uniform(-4, 4))
+            self.assert_matrices_alike(rotation(*turned(attitude, mount)),
+                                       product(rotation(*attitude), rotation(*mount)))
 
+    def test_that_are_turned_in_the_airframe_see_the_ground_that_their_rays_meet_by_the_service_s_matrices(self):
+        draw = random.Random(4)
+        for _ in range(300):
+            attitude = (draw.uniform(-0.3, 0.3), draw.uniform(-0.3, 0.3), draw.uniform(-4, 4))
+            mount = (draw.uniform(-0.5, 0.5), draw.uniform(-0.5, 0.5), draw.uniform(-4, 4))
+            right, back = draw.uniform(-0.2, 0.2), draw.uniform(-0.2, 0.2)
+            north, east, down = (row[0] for row in product(rotation(*attitude), rotation(*mount),
+                                                           ((-back,), (right,), (1.0,))))
+            expected = (north / down, east / down)
+            for a, b in zip(ground_of(*turned(attitude, mount), right, back), expected):
+                self.assertAlmostEqual(a, b, places=9)
+
+    def test_that_are_turned_in_the_airframe_look_ahead_left_and_to_where_their_upper_edge_points(self):
+        ten, thirty, right_angle = map(math.radians, (10, 30, 90))
+        for attitude, mount, (north, east) in (
+                ((0, 0, 0), (0, thirty, 0), (math.tan(thirty), 0)),
+                ((0, 0, right_angle), (0, thirty, 0), (0, math.tan(thirty))),
+                ((0, 0, 0), (ten, 0, 0), (0, -math.tan(ten))),
+                ((0, 0, 0), (0, thirty, right_angle), (0, math.tan(thirty))),
+                ((0, 0, 0), (ten, 0, right_angle), (math.tan(ten), 0)),
+                ((0, ten, 0), (0, thirty, 0), (math.tan(ten + thirty), 0)),
+                ((-ten, 0, 0), (0, thirty, right_angle), (0, math.tan(ten + thirty)))):
+            seen = ground_of(*turned(attitude, mount), 0.0, 0.0)
+            self.assertAlmostEqual(seen[0], north, places=9)
+            self.assertAlmostEqual(seen[1], east, places=9)
+
+    def test_lean_as_far_as_their_optical_axis_is_from_straight_down(self):
+        draw = random.Random(6)
+        for _ in range(100):
+            roll, pitch = draw.uniform(-1.5, 1.5), draw.uniform(-1.5, 1.5)
+            north, east = ground_of(roll, pitch, 0.0, 0.0, 0.0)
+            self.assertAlmostEqual(lean(roll, pitch), math.atan(math.hypot(north, east)), places=9)
+        self.assertAlmostEqual(lean(math.pi, 0.0), math.pi)
 
     def test_in_gimbals_look_where_quaternions_turn_one_that_looks_ahead(self):
         draw = random.Random(5)
@@ -83,9 +128,7 @@ class Cameras(unittest.TestCase):
                           cr * cp * sy - sr * sp * cy)
             heading = draw.uniform(-4, 4)
             expected = product(about(2, heading), rotation(roll, pitch, yaw), about(1, 0.5 * math.pi))
-            for row, other in zip(rotation(*in_gimbal(quaternion, heading)), expected):
-                for a, b in zip(row, other):
-                    self.assertAlmostEqual(a, b, places=9)
+            self.assert_matrices_alike(rotation(*in_gimbal(quaternion, heading)), expected)
 
     def test_in_gimbals_have_the_angles_that_quaternions_worked_out_by_hand_say(self):
         for quaternion, angles in ((DOWN, (0, 0, 10)), (DOWN_TO_THE_EAST, (0, 0, 100)), (AHEAD_AND_DOWN, (0, 30, 10)),

@@ -67,11 +67,14 @@ class Ground:
         east, north, _ = self._from_wgs84.TransformPoint(pose["lon"], pose["lat"])
         return north, east
 
-    def seen_from(self, north, east, yaw, camera_yaw):
-        """What a camera sees that is fixed to the airframe and looks down through its floor."""
+    def seen_from(self, north, east, yaw, mount):
+        """What a camera sees that is fixed to the airframe, turned by degrees of yaw, pitch and roll against one that
+        looks down through its floor."""
         right, back = np.meshgrid(np.arange(COLS) - 0.5 * (COLS - 1), np.arange(ROWS) - 0.5 * (ROWS - 1))
         rays = np.stack([-back, right, np.full_like(right, FOCAL_PX)], -1)
-        rays = rays @ (about("z", yaw) @ about("y", PITCH) @ about("x", ROLL) @ about("z", camera_yaw)).T
+        camera_yaw, camera_pitch, camera_roll = np.radians(mount)
+        airframe = about("z", yaw) @ about("y", PITCH) @ about("x", ROLL)
+        rays = rays @ (airframe @ about("z", camera_yaw) @ about("y", camera_pitch) @ about("x", camera_roll)).T
         reach = AGL_M / rays[..., 2]
         col = (east + reach * rays[..., 1] - self.west) / self.gsd_m
         row = (self.north - north - reach * rays[..., 0]) / self.gsd_m
@@ -83,9 +86,9 @@ class Flight(threading.Thread):
     """Round a circle about the middle of the town, until it is told to end. `truth`: time in microseconds to north,
     east and yaw."""
 
-    def __init__(self, ground, folder, port, camera_yaw):
+    def __init__(self, ground, folder, port, mount):
         super().__init__(daemon=True)
-        self._ground, self._folder, self._port, self._camera_yaw = ground, folder, port, camera_yaw
+        self._ground, self._folder, self._port, self._mount = ground, folder, port, mount
         self._middle = (ground.north - 0.5 * ground.gsd_m * ground.pixels.shape[1],
                         ground.west + 0.5 * ground.gsd_m * ground.pixels.shape[2])
         self.truth = {}
@@ -114,7 +117,7 @@ class Flight(threading.Thread):
 
     def _take_picture(self, number, seconds, began):
         north, east, yaw = self._place(seconds)
-        seen = self._ground.seen_from(north, east, yaw, self._camera_yaw)
+        seen = self._ground.seen_from(north, east, yaw, self._mount)
         memory = gdal.GetDriverByName("MEM").Create("", COLS, ROWS, 3)
         memory.WriteRaster(0, 0, COLS, ROWS, np.ascontiguousarray(seen).tobytes())
         part = str(self._folder / f"{number}.part")
@@ -143,16 +146,16 @@ class LiveFlight(unittest.TestCase):
         self.addCleanup(process.terminate)
         return process
 
-    def told(self, camera_yaw):
+    def told(self, mount):
         """Of the places that the track claims: errors in metres, and what the autopilot was told."""
-        frames = self.folder / f"frames-{camera_yaw}"
-        frames.mkdir()
+        frames = Path(tempfile.mkdtemp(dir=self.folder))
         service = self.start(PROGRAM, "serve", "--maps", str(self.folder / "maps"), "--port", "0",
                              stdout=subprocess.PIPE)
         address = next(word for word in service.stdout.readline().split() if word.startswith("http://"))
         script = [sys.executable, "-B", "-u"]
         steps = self.start(*script, str(SCRIPTS / "mavlink_steps"), "--listen", "127.0.0.1:0",
-                           "--watch", str(frames), "--camera", "body", "--camera-yaw", str(camera_yaw),
+                           "--watch", str(frames), "--camera", "body",
+                           *(f"--camera-{axis}={angle}" for axis, angle in zip(("yaw", "pitch", "roll"), mount)),
                            stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         port = int(steps.stderr.readline().split()[-1])
         autopilot = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
@@ -163,7 +166,7 @@ class LiveFlight(unittest.TestCase):
                              "--frame", f"focal_px={FOCAL_PX}", "satellites=10", "--format", "mavproxy",
                              "--max-age", "60", "--send", "127.0.0.1:%d" % autopilot.getsockname()[1],
                              stdin=steps.stdout, stdout=subprocess.PIPE)
-        flight = Flight(self.ground, frames, port, math.radians(camera_yaw))
+        flight = Flight(self.ground, frames, port, mount)
         flight.start()
         self.addCleanup(flight.over.set)
         give_up = time.monotonic() + PATIENCE_S
@@ -180,8 +183,8 @@ class LiveFlight(unittest.TestCase):
         flight.join()
         return errors, positions
 
-    def check(self, camera_yaw):
-        errors, positions = self.told(camera_yaw)
+    def check(self, mount):
+        errors, positions = self.told(mount)
         self.assertGreaterEqual(len(errors), ENOUGH)
         self.assertLess(max(errors), 4.0, "the bank alone moves the middle of the frame by 50 m")
         for position in positions:
@@ -190,10 +193,10 @@ class LiveFlight(unittest.TestCase):
             self.assertLess(abs(math.remainder(0.01 * position["yaw"] - position["true_yaw_deg"], 360.0)), 3.0)
 
     def test_is_located_to_metres_in_a_banked_turn(self):
-        self.check(camera_yaw=0)
+        self.check((0, 0, 0))
 
-    def test_is_located_with_a_camera_that_is_turned_in_the_airframe(self):
-        self.check(camera_yaw=90)
+    def test_is_located_with_a_camera_that_is_turned_and_tilted_in_the_airframe(self):
+        self.check((90, 20, -4))
 
 
 if __name__ == "__main__":

@@ -247,10 +247,10 @@ class Program(unittest.TestCase):
         self.assertEqual((step["agl_m"], step["alt_m"], step["system"]), (120.0, 640.5, 7))
 
     def test_tells_which_way_the_camera_of_a_gimbal_looks(self):
-        self.start("--camera", "gimbal", "--camera-yaw", "-30")
+        self.start("--camera", "gimbal", "--camera-yaw", "-30", "--camera-pitch", "2", "--camera-roll", "-1.5")
         step = self.step_of(Path(self.folder.name, "1.jpg"))
         self.assertAlmostEqual(step["yaw_deg"], math.degrees(1.0) + 60.0, places=2)
-        self.assertEqual((step["roll_deg"], step["pitch_deg"], step["camera_yaw_deg"]), (0.0, 0.0, 60.0))
+        self.assertEqual((step["roll_deg"], step["pitch_deg"], step["camera_yaw_deg"]), (-1.5, 2.0, 60.0))
 
     def test_tells_the_time_and_the_height_that_it_was_told(self):
         self.start("--delay", "0.25", "--agl", "90.5")
@@ -277,14 +277,25 @@ class Program(unittest.TestCase):
         self.assertIn("can be read again", self.program.stderr.readline())
         self.assertEqual(self.step_of(folder / "1.jpg")["image"], str(folder / "1.jpg"))
 
+    def refusal_of(self, *options):
+        ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera", "body",
+                                *options], stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 2)
+        return ended.stderr
+
     def test_refuses_what_is_no_number_delay_or_system(self):
         for option, value in (("--agl", "nan"), ("--takeoff-agl", "inf"), ("--camera-yaw", "x"), ("--delay", "-0.1"),
                               ("--delay", "nan"), ("--system", "0"), ("--system", "256"),
                               ("--every", "0"), ("--every", "nan")):
-            ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera", "body",
-                                    option, value], stderr=subprocess.PIPE, text=True, timeout=60)
-            self.assertEqual(ended.returncode, 2)
-            self.assertIn(f"argument {option}: ", ended.stderr)
+            self.assertIn(f"argument {option}: ", self.refusal_of(option, value))
+
+    def test_refuses_a_camera_that_is_mounted_to_look_at_the_horizon(self):
+        for option, value in (("--camera-pitch", "-90"), ("--camera-roll", "80.1"), ("--camera-pitch", "nan")):
+            self.assertIn(f"argument {option}: ", self.refusal_of(option, value))
+        self.assertIn("straight down, which is 0: the -90 of a gimbal is a pitch of 0",
+                      self.refusal_of("--camera-pitch=-90"))
+        self.assertIn("--camera-pitch 70 and --camera-roll -60 are together 80.2 degrees from straight down: at most",
+                      self.refusal_of("--camera-pitch", "70", "--camera-roll", "-60"))
 
     def test_ends_quietly_when_nobody_reads_its_steps(self):
         self.start()

@@ -30,8 +30,8 @@ class LinesOfPictures(unittest.TestCase):
         self.addCleanup(self.time.__exit__)
         self.vehicle = Vehicle()
         self.clock = WallClock()
-        self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, agl=100.0, by_terrain=False, delay=0.0,
-                                             origin="o")
+        self.options = types.SimpleNamespace(camera="level", camera_yaw=0.0, camera_pitch=0.0, camera_roll=0.0,
+                                             agl=100.0, by_terrain=False, delay=0.0, origin="o")
         self.lines = self.lines_of(None)
 
     def lines_of(self, gimbal):
@@ -132,6 +132,19 @@ class LinesOfPictures(unittest.TestCase):
             ((step,), _) = self.printed()
             self.assertAlmostEqual(step["roll_deg"], math.degrees(roll), places=2)
             self.assertAlmostEqual(step["pitch_deg"], math.degrees(pitch), places=2)
+
+    def test_tell_how_a_camera_leans_that_is_mounted_so(self):
+        self.options.camera_pitch, self.options.camera_roll = 30.0, -2.0
+        for camera, camera_yaw, roll_deg, pitch_deg, yaw_deg in (
+                ("level", 90.0, -2.0, 30.0, 90.0), ("body", 0.0, -2.0, 30.0 + math.degrees(0.1), 0.0),
+                ("body", 180.0, -2.0, 30.0 - math.degrees(0.1), 180.0)):
+            self.options.camera, self.options.camera_yaw = camera, camera_yaw
+            self.fly(3.0)
+            self.lines.add("1.jpg", self.time.now - 0.05)
+            ((step,), _) = self.printed()
+            self.assertAlmostEqual(step["roll_deg"], roll_deg, places=2)
+            self.assertAlmostEqual(step["pitch_deg"], pitch_deg, places=2)
+            self.assertAlmostEqual(abs(step["camera_yaw_deg"]), yaw_deg, places=2)
 
     def test_of_a_gimbal_are_left_out_where_it_says_nothing_and_wait_for_what_it_says_later(self):
         self.options.camera, gimbal = "gimbal", Gimbal(154)

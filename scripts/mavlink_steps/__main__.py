@@ -10,7 +10,11 @@ Movements are the sum of velocities: of LOCAL_POSITION_NED, or with --by-air of 
 give the track wind_sigma_m_s). Heights are those above ground of ALTITUDE (PX4) or TERRAIN_REPORT (ArduPilot), else
 above the take-off. That above the sea, which goes to the autopilot with each position, is that of ALTITUDE or VFR_HUD.
 A picture was taken when its file was last written, less --delay.
+
+With --csv the flight of a vehicle that has GPS becomes a table of its pictures with their places, those of
+GLOBAL_POSITION_INT while GPS_RAW_INT tells a 3D fix. Send the autopilot no positions meanwhile: they would be its own.
 """
+import contextlib
 import math
 import os
 import select
@@ -28,6 +32,8 @@ from options import parse_arguments
 from packets import messages
 from pictures import NewPictures, Silence
 from receiver import Receiver
+from recording import Recording, columns
+from table import Table
 from vehicle import Vehicle
 
 LOOK_S = 0.1       # between two looks into the folder
@@ -46,12 +52,14 @@ def hear(link, receiver):
             receiver.take(message, came)
 
 
-def follow(link, pictures, clock, options):
+def follow(link, pictures, table, clock, options):
+    """`table`: None where the flight is not recorded."""
     vehicle = Vehicle(options.by_air, options.takeoff_agl)
     autopilot = Autopilot(options.system, options.component)
     gimbal = Gimbal(options.gimbal) if options.camera == "gimbal" else None
     receiver = Receiver(autopilot, vehicle, gimbal)
-    lines = Lines(vehicle, gimbal, autopilot, clock, options)
+    recording = Recording(table, vehicle, options) if table else None
+    lines = Lines(vehicle, gimbal, autopilot, clock, options, recording)
     silence = Silence(options.watch)
     link_silence = LinkSilence(options.listen[1])
     came = looked = -math.inf
@@ -68,6 +76,8 @@ def follow(link, pictures, clock, options):
         for path, written in new:
             lines.add(path, written - options.delay)
         lines.print_due()
+        if recording:
+            recording.write_due()
         looked = time.monotonic()
 
 
@@ -78,11 +88,13 @@ def main(arguments=None):
     try:
         pictures = NewPictures(options.watch, clock, options.every)
         family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
-        with socket.socket(family, socket.SOCK_DGRAM) as link:
+        with contextlib.ExitStack() as opened:
+            link = opened.enter_context(socket.socket(family, socket.SOCK_DGRAM))
             link.bind(options.listen)
             link.setblocking(False)
+            table = opened.enter_context(Table(options.csv, columns(options))) if options.csv else None
             print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)
-            follow(link, pictures, clock, options)
+            follow(link, pictures, table, clock, options)
     except BrokenPipeError:  # nobody reads the steps any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1

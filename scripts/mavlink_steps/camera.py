@@ -21,8 +21,8 @@ def _rotation(roll, pitch, yaw):
 
 
 def turned(attitude, mount):
-    """Of a camera in such an airframe that is not fixed straight to its floor, but turned against it, by a yaw about
-    the downward axis (clockwise seen from above), by a pitch about its right axis, and by a roll about the one ahead."""
+    """Of a camera in such an airframe that is not fixed straight to its floor, but turned against it: by a yaw about the
+    axis that points down (clockwise seen from above), then a pitch about its own right axis, then a roll."""
     roll, pitch, heading = attitude
     body = _rotation(roll, pitch, 0.0)
     forward, right, down = (tuple(sum(a * b for a, b in zip(row, axis)) for row in body)

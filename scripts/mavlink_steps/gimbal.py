@@ -5,8 +5,7 @@ import sys
 
 from boot_clock import BootClock
 from camera import in_gimbal
-from history import KEPT, around, between
-from vehicle import Unknown
+from history import KEPT, Unknown, around, between
 
 STATUS = "GIMBAL_DEVICE_ATTITUDE_STATUS"
 YAW_LOCK, YAW_IN_VEHICLE_FRAME, YAW_IN_EARTH_FRAME = 16, 32, 64

@@ -3,6 +3,10 @@
 KEPT = 3000  # some minutes of telemetry
 
 
+class Unknown(Exception):
+    """What was not told of a time."""
+
+
 def around(history, when):
     """The last entry before a time, or of it, and the first one after it. None where there is none."""
     at = next((i for i in range(len(history) - 1, -1, -1) if history[i][0] <= when), -1)

@@ -6,21 +6,29 @@ import sys
 import time
 
 from camera import turned
-from vehicle import LONGEST_HOLE_S, Unknown
+from history import Unknown
+from vehicle import LONGEST_HOLE_S
 
 WAIT_S = 0.5  # for what the autopilot tells of the time after a picture
 
 
+def _degrees(angle):
+    """Without the sign of a zero."""
+    return round(math.degrees(angle), 3) + 0.0
+
+
 class Lines:
     """Pictures, and what the autopilot tells of the time at which each was taken. Positions that come of them go to its
-    `system`. `gimbal`: None where nobody listens to one. `clock`: a WallClock."""
+    `system`. `gimbal`: None where nobody listens to one. `clock`: a WallClock. `recording`: a Recording, None for
+    none."""
 
-    def __init__(self, vehicle, gimbal, autopilot, clock, options):
+    def __init__(self, vehicle, gimbal, autopilot, clock, options, recording=None):
         self._vehicle = vehicle
         self._gimbal = gimbal
         self._autopilot = autopilot
         self._clock = clock
         self._options = options
+        self._recording = recording
         self._waiting = collections.deque()  # path, time.monotonic()
         self._origin = None
         self._knows_place = True
@@ -39,13 +47,15 @@ class Lines:
         while self._waiting and self._is_due(self._waiting[0][1]):
             path, captured = self._waiting.popleft()
             try:
-                step = self._step(path, captured)
+                step, heading_deg = self._step(path, captured)
             except Unknown as why:
                 print(f"{path} is left out: {why}", file=sys.stderr)
                 continue
             self._last_us = step["time_us"]
             self._say_what_is_not_known(step)
             print(json.dumps(step), flush=True)
+            if self._recording is not None:
+                self._recording.add(captured, step, heading_deg)
 
     def _is_due(self, captured):
         if time.monotonic() > captured + self._options.delay + WAIT_S:
@@ -62,7 +72,7 @@ class Lines:
         return turned(attitude, tuple(map(math.radians, mount)))
 
     def _step(self, path, captured):
-        """Throws Unknown."""
+        """And the heading of the picture's upper edge. Throws Unknown."""
         place, attitude = self._vehicle.seen_at(captured)
         roll, pitch, yaw = self._camera_at(captured, attitude)
         camera_yaw = math.remainder(yaw - attitude[2], math.tau)
@@ -72,13 +82,13 @@ class Lines:
             raise Unknown("it was not taken after the one before it")
         step = {"time_us": time_us, "monotonic_s": round(captured, 6),
                 "origin": f"{self._options.origin}-{self._vehicle.holes_before(captured)}",
-                "roll_deg": round(math.degrees(roll), 3), "pitch_deg": round(math.degrees(pitch), 3), **heights,
-                "camera_yaw_deg": round(math.degrees(camera_yaw), 3), "image": str(path),
+                "roll_deg": _degrees(roll), "pitch_deg": _degrees(pitch), **heights,
+                "camera_yaw_deg": _degrees(camera_yaw), "image": str(path),
                 "system": self._autopilot.system}
+        heading_deg = _degrees(yaw % math.tau)
         if place is not None:
-            step.update(north_m=round(place[0], 3), east_m=round(place[1], 3),
-                        yaw_deg=round(math.degrees(yaw) % 360.0, 3))
-        return step
+            step.update(north_m=round(place[0], 3), east_m=round(place[1], 3), yaw_deg=heading_deg)
+        return step, heading_deg
 
     def _heights(self, captured):
         """Throws Unknown."""

@@ -1,12 +1,17 @@
 """What the program is told on its command line."""
 import argparse
 import math
+import pathlib
 import uuid
 
 from camera import FLATTEST, lean
 from gimbal import STATUS
+from table import fits_a_cell
 
 FLATTEST_DEG = math.degrees(FLATTEST)
+#: What a table tells of a camera: of how many numbers, None of any
+CAMERA = {"fov_deg": 1, "focal_px": 1, "principal_px": 2, "distortion": None, "lens": None}
+LENSES = ("perspective", "fisheye")
 
 
 def parse_address(text):
@@ -45,6 +50,31 @@ def parse_interval(text):
     return interval_s
 
 
+def parse_table(text):
+    if not fits_a_cell(pathlib.Path(text).stem):
+        raise argparse.ArgumentTypeError(f"'{text}': its name is that of the flight, in a table that can hold no "
+                                         "commas, quotes, line breaks or outer blanks")
+    return text
+
+
+def parse_camera(text):
+    """NAME=VALUE as scripts/ground_station takes it of pictures, as column and cell of a table."""
+    name, _, value = text.partition("=")
+    if name not in CAMERA:
+        raise argparse.ArgumentTypeError(f"'{text}': write NAME=VALUE, the name one of {', '.join(CAMERA)}")
+    if name == "lens":
+        if value not in LENSES:
+            raise argparse.ArgumentTypeError(f"'{text}': write {' or '.join(LENSES)}")
+        return name, value
+    try:
+        numbers = [parse_number(part) for part in value.strip("[]").split(",")]
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"'{text}': write a number, or several with commas between") from None
+    if CAMERA[name] not in (None, len(numbers)):
+        raise argparse.ArgumentTypeError(f"'{text}': it has {len(numbers)} numbers, not {CAMERA[name]}")
+    return name, " ".join(f"{number:.15g}" for number in numbers)
+
+
 def _add_vehicle(parser):
     parser.add_argument("--listen", type=parse_address, default=("0.0.0.0", 14551), metavar="[HOST:]PORT",
                         help="where MAVLink comes in by UDP (default: 14551)")
@@ -66,10 +96,12 @@ def _add_camera(parser):
                         help="where the picture's upper edge points, clockwise from the nose, or from where "
                              "a gimbal says that it points (default: 0)")
     parser.add_argument("--camera-pitch", type=parse_lean, default=0.0, metavar="DEGREES",
-                        help="how far the camera is tilted towards that edge from where it would look, straight down "
-                             "through the floor, straight down, or where a gimbal says (default: 0)")
+                        help="how far the camera is tilted towards that edge, against straight down through the "
+                             "airframe's floor (body), straight down (level), or where the gimbal says that it looks "
+                             "(default: 0)")
     parser.add_argument("--camera-roll", type=parse_lean, default=0.0, metavar="DEGREES",
-                        help="the same, of its right side down: it looks farther to the left (default: 0)")
+                        help="how far its right side is turned down against the same, so that it looks farther to the "
+                             "left (default: 0)")
 
 
 def _add_heights(parser):
@@ -93,6 +125,25 @@ def _add_pictures(parser):
                              "some)")
 
 
+def _add_recording(parser):
+    parser.add_argument("--csv", type=parse_table, metavar="FILE",
+                        help="record here the flight of a vehicle that has GPS (GLOBAL_POSITION_INT, GPS_RAW_INT), a "
+                             "new table of its pictures for roadfix bench and roadfix fly --over")
+    parser.add_argument("--frame", nargs="+", type=parse_camera, default=[], metavar="NAME=VALUE",
+                        help="of --csv: what the table tells of the camera, fov_deg, or focal_px and principal_px, "
+                             "distortion, lens")
+
+
+def _check_recording(parser, options):
+    options.frame = dict(options.frame)
+    if options.csv is None and options.frame:
+        parser.error("--frame is what --csv tells of the camera, and there is no --csv")
+    has_lens = "fov_deg" not in options.frame if "focal_px" in options.frame else set(options.frame) == {"fov_deg"}
+    if options.csv is not None and not has_lens:
+        parser.error("--csv needs --frame fov_deg=DEGREES, or --frame focal_px=PIXELS and what else a calibration "
+                     "tells (principal_px, distortion, lens)")
+
+
 def _check_lean(parser, options):
     lean_deg = math.degrees(lean(math.radians(options.camera_roll), math.radians(options.camera_pitch)))
     if lean_deg > FLATTEST_DEG:
@@ -103,9 +154,10 @@ def _check_lean(parser, options):
 def parse_arguments(description, arguments):
     parser = argparse.ArgumentParser(prog="mavlink_steps", description=description,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    for add in (_add_vehicle, _add_pictures, _add_camera, _add_heights):
+    for add in (_add_vehicle, _add_pictures, _add_camera, _add_heights, _add_recording):
         add(parser)
     parser.set_defaults(origin=uuid.uuid4().hex)  # sums of velocities begin anew with each start
     options = parser.parse_args(arguments)
     _check_lean(parser, options)
+    _check_recording(parser, options)
     return options

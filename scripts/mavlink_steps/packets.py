@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 #: id: name, CRC_EXTRA, wire order of the fields that are used
 MESSAGES = {
+    24: ("GPS_RAW_INT", 24, "<Q3i4HB", ("time_usec", "lat", "lon", "alt", "eph", "epv", "vel", "cog", "fix_type")),
     30: ("ATTITUDE", 39, "<Ifff", ("time_boot_ms", "roll", "pitch", "yaw")),
     32: ("LOCAL_POSITION_NED", 185, "<I6f", ("time_boot_ms", "x", "y", "z", "vx", "vy", "vz")),
     33: ("GLOBAL_POSITION_INT", 104, "<I4i", ("time_boot_ms", "lat", "lon", "alt", "relative_alt")),

@@ -151,7 +151,8 @@ def _newest_in(folder, is_asked_for):
 
 
 def _is_other_file(entry):
-    return entry.is_file() and os.path.splitext(entry.name)[1].lower() not in ENDINGS
+    """But for tables, as of --csv, which no camera writes."""
+    return entry.is_file() and os.path.splitext(entry.name)[1].lower() not in (*ENDINGS, ".csv")
 
 
 class Silence:

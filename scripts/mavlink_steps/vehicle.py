@@ -4,16 +4,13 @@ import math
 
 from airspeed import true_airspeed
 from boot_clock import BootClock
+from gps import Gps
 from heights import Heights
-from history import KEPT, around, between
+from history import KEPT, Unknown, around, between
 
 LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
 CARRIED_ON_S = 1.0     # by the last velocity
 ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
-
-
-class Unknown(Exception):
-    """What is not known of the vehicle at a time."""
 
 
 def _finite(*values):
@@ -22,12 +19,13 @@ def _finite(*values):
 
 class Vehicle:
     """`by_air`: movements from airspeed and heading, as a track with wind_sigma_m_s takes them, instead of from the
-    estimator's velocity over ground. Positions are not used: they jump where the autopilot is told better ones. All
+    estimator's velocity over ground. Positions are no movements: they jump where the autopilot is told better ones. All
     times are those of time.monotonic()."""
 
     def __init__(self, by_air=False, takeoff_agl_m=0.0):
         self._by_air = by_air
         self._heights = Heights(takeoff_agl_m)
+        self._gps = Gps()
         self._clock = BootClock()
         self._places = collections.deque(maxlen=KEPT)     # time, north, east, velocity to the north and to the east
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
@@ -40,6 +38,8 @@ class Vehicle:
             when = self._clock.ours(fields["time_boot_ms"] / 1e3, came)
             if when is not None:
                 self._hear_at(when, name, fields, came)
+        elif name == "GPS_RAW_INT":
+            self._gps.tell_fix(fields["fix_type"], 1e-7 * fields["lat"], 1e-7 * fields["lon"], came)
         elif name == "HOME_POSITION":
             self._heights.tell_takeoff(-fields["z"])
         elif name == "VFR_HUD":
@@ -62,6 +62,7 @@ class Vehicle:
                 self._move((fields["vx"], fields["vy"]), when)
         elif name == "GLOBAL_POSITION_INT":
             self._heights.tell_above_takeoff(1e-3 * fields["relative_alt"], came)
+            self._gps.tell_place(1e-7 * fields["lat"], 1e-7 * fields["lon"], when)
 
     def seen_at(self, when):
         """North and east in metres from anywhere, None where they are not known, and roll, pitch and yaw in radians.
@@ -72,6 +73,10 @@ class Vehicle:
                 raise Unknown("the autopilot was not heard yet")
             raise Unknown(f"no two ATTITUDE around that time, at most {ATTITUDE_HOLE_S:g} s apart")
         return self._place_at(when), attitude
+
+    def gps_place_at(self, when):
+        """Latitude and longitude in degrees, while it had GPS. Throws Unknown."""
+        return self._gps.place_at(when)
 
     @property
     def velocities(self):

@@ -12,8 +12,8 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlin
 
 from camera import in_gimbal, lean, turned  # noqa: E402
 from gimbal import STATUS, Gimbal  # noqa: E402
+from history import Unknown  # noqa: E402
 from packets import Message  # noqa: E402
-from vehicle import Unknown  # noqa: E402
 
 HALF = math.sqrt(0.5)
 DOWN = (HALF, 0.0, -HALF, 0.0)            # pitch -90

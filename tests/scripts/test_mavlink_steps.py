@@ -42,7 +42,10 @@ OTHERS = {
                                "759e"), {"bottom_clearance": 287.5, "altitude_amsl": 2.0}),
     "GLOBAL_POSITION_INT": (
         bytes.fromhex("fd1c000009070121000040e201007b3582162d0821b7fad0070024faffff6400ceff07002823eb90"),
-        {"time_boot_ms": 123456, "relative_alt": -1500}),
+        {"time_boot_ms": 123456, "lat": 377632123, "lon": -1222571987, "relative_alt": -1500}),
+    "GPS_RAW_INT": (
+        bytes.fromhex("fd2c00000a070118000015cd5b07000000007b3582162d0821b7fad007007900c800e2042823030c603d0800dc050000"
+                      "c40900002c01ca19"), {"lat": 377632123, "lon": -1222571987, "fix_type": 3}),
     "HOME_POSITION": (
         bytes.fromhex("fd350000090701f200007b3582162d0821b7fad007000000c03f000020c0000044c10000803f00000000000000000000"
                       "00000000000000000000000000000589ee"), {"altitude": 512250, "x": 1.5, "y": -2.5, "z": -12.25}),
@@ -188,7 +191,7 @@ class Listening(unittest.TestCase):
         self.theirs.send(packet("ATTITUDE", 100, 0.0, 0.0, 0.0))
         began = time.monotonic()
         with mock.patch.object(self.program, "Silence", lambda folder: silence), said(), self.assertRaises(End):
-            self.program.follow(self.ours, pictures, clock, options)
+            self.program.follow(self.ours, pictures, None, clock, options)
         self.assertEqual(calls, ["clock", "pictures"])
         (has_picture, heard), _ = silence.look.call_args
         self.assertFalse(has_picture)
@@ -214,6 +217,8 @@ class Program(unittest.TestCase):
         self.link.sendto(packet("ATTITUDE", boot_ms, 0.02, -0.01, 1.0, system=system) +
                          packet("LOCAL_POSITION_NED", boot_ms, 0, 0, -120.0, 10.0, 5.0, 0.0, system=system) +
                          packet("VFR_HUD", 11.0, 11.0, 640.5, system=system) +
+                         packet("GLOBAL_POSITION_INT", boot_ms, 377_581_000, 382_655_000, 0, 120_000, system=system) +
+                         packet("GPS_RAW_INT", 0, 377_581_000, 382_655_000, 0, 0, 0, 0, 0, 3, system=system) +
                          packet("ATTITUDE", boot_ms + 50, 1.0, 1.0, 2.0, system=system, component=154) +
                          gimbal_status(boot_ms, system), ("127.0.0.1", self.port))
 
@@ -265,6 +270,34 @@ class Program(unittest.TestCase):
         self.assertEqual(step["alt_m"], 640.5)
         self.assertNotIn("agl_m", step)
 
+    def test_records_a_flight_with_gps_in_a_new_table(self):
+        table = Path(self.folder.name, "flight.csv")
+        self.start("--camera", "level", "--csv", str(table), "--frame", "focal_px=1000", "principal_px=811,588.5",
+                   "distortion=[-0.28, 0.08, 0, 0]", "lens=perspective")
+        step = self.step_of(Path(self.folder.name, "1.jpg"))
+        began = time.monotonic()
+        while len(table.read_text().splitlines()) < 2 and time.monotonic() < began + 20.0:
+            self.tell(5000 + round(1e3 * (time.monotonic() - began)))
+            time.sleep(0.05)
+        self.program.kill()
+        header, row = (line.split(",") for line in table.read_text().splitlines())
+        row = dict(zip(header, row))
+        self.assertEqual(row.pop("time_s"), f"{1e-6 * step['time_us']:.6f}")
+        self.assertEqual(row, {
+            "file": "1.jpg", "sequence": "flight", "lat": "37.75810000", "lon": "38.26550000",
+            "heading_deg": str(step["yaw_deg"]), "roll_deg": "0.0", "pitch_deg": "0.0", "agl_m": "120.0",
+            "focal_px": "1000", "principal_px": "811 588.5", "distortion": "-0.28 0.08 0 0", "lens": "perspective"})
+
+    def test_records_no_flight_over_another(self):
+        table = Path(self.folder.name, "flight.csv")
+        table.write_text("another\n")
+        ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera", "body",
+                                "--listen", "127.0.0.1:0", "--csv", str(table), "--frame", "fov_deg=78"],
+                               stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(ended.returncode, 1)
+        self.assertIn(f"mavlink_steps: {table} is there already: give each flight a table of its own", ended.stderr)
+        self.assertEqual(table.read_text(), "another\n")
+
     def test_outlasts_a_folder_that_is_gone_for_a_moment(self):
         self.start()
         folder = Path(self.folder.name)
@@ -296,6 +329,24 @@ class Program(unittest.TestCase):
                       self.refusal_of("--camera-pitch=-90"))
         self.assertIn("--camera-pitch 70 and --camera-roll -60 are together 80.2 degrees from straight down: at most",
                       self.refusal_of("--camera-pitch", "70", "--camera-roll", "-60"))
+
+    def test_refuses_what_no_table_can_tell_of_a_camera(self):
+        table = Path(self.folder.name, "a.csv")
+        csv = ["--csv", str(table)]
+        for options, words in (
+                (csv, "--csv needs --frame fov_deg=DEGREES, or --frame focal_px=PIXELS"),
+                ([*csv, "--frame", "lens=fisheye"], "--csv needs --frame"),
+                ([*csv, "--frame", "fov_deg=78", "focal_px=1000"], "--csv needs --frame"),
+                ([*csv, "--frame", "fov_deg=78", "principal_px=811,588"], "--csv needs --frame"),
+                (["--frame", "fov_deg=78"], "there is no --csv"),
+                (["--csv", "a,b.csv", "--frame", "fov_deg=78"], "'a,b.csv': its name is that of the flight"),
+                *(([*csv, "--frame", setting], f"argument --frame: '{setting}': {words}")
+                  for setting, words in (
+                      ("fov=78", "write NAME=VALUE, the name one of fov_deg, focal_px,"), ("fov_deg", "write a number"),
+                      ("fov_deg=wide", "write a number"), ("lens=wide", "write perspective or fisheye"),
+                      ("principal_px=811", "it has 1 numbers, not 2"), ("fov_deg=78,60", "it has 2 numbers, not 1")))):
+            self.assertIn(words, self.refusal_of(*options))
+        self.assertFalse(table.exists())
 
     def test_ends_quietly_when_nobody_reads_its_steps(self):
         self.start()

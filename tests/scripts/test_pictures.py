@@ -225,7 +225,7 @@ class Pictures(unittest.TestCase):
 
     def test_of_a_kind_that_is_not_read_are_named_where_no_others_come(self):
         begin_s = time.time()
-        for name, seconds in (("old.tif", -1.0), ("1.tif", 4.0), ("2.TIF", 5.0), ("0.jpg", 6.0)):
+        for name, seconds in (("old.tif", -1.0), ("1.tif", 4.0), ("2.TIF", 5.0), ("0.jpg", 6.0), ("flight.csv", 7.0)):
             self.write(name)
             os.utime(self.folder / name, (begin_s + seconds,) * 2)
         self.check_question(begin_s, f"only .jpg, .jpeg, .png are read, and {self.folder}/2.TIF is something else")

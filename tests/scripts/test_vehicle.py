@@ -11,7 +11,8 @@ from words import said
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
 from boot_clock import BootClock  # noqa: E402
-from vehicle import Unknown, Vehicle  # noqa: E402
+from history import Unknown  # noqa: E402
+from vehicle import Vehicle  # noqa: E402
 
 
 def hud(airspeed, alt=0.0):
@@ -97,7 +98,8 @@ class Flights(unittest.TestCase):
     def test_are_as_high_above_the_take_off_as_is_told_where_the_estimator_has_no_origin(self):
         vehicle = Vehicle(takeoff_agl_m=3.0)
         for came, relative_alt in ((1.0, 40_500), (2.0, 41_500)):
-            vehicle.hear("GLOBAL_POSITION_INT", {"time_boot_ms": 1e3 * came, "relative_alt": relative_alt}, came)
+            vehicle.hear("GLOBAL_POSITION_INT", {"time_boot_ms": 1e3 * came, "lat": 0, "lon": 0,
+                                                 "relative_alt": relative_alt}, came)
             self.assertEqual(vehicle.agl_m(vehicle.heard), 1e-3 * relative_alt + 3.0)
         move(vehicle, 2.0, height_m=80.0)
         self.assertEqual(vehicle.agl_m(vehicle.heard), 83.0)

@@ -34,7 +34,8 @@ class Recording:
         self._folder = os.path.realpath(os.path.dirname(table.path))
         self._sequence = pathlib.Path(table.path).stem
         self._waiting = collections.deque()  # time.monotonic(), step, heading
-        self._lacks = None  # of the last picture
+        self._lacks = None   # of the last picture
+        self._files = set()  # that rows name
 
     def add(self, captured, step, heading_deg):
         """`heading_deg`: of the picture's upper edge, which a step has only where movements are known."""
@@ -57,7 +58,11 @@ class Recording:
             raise Unknown("no table can hold the commas, quotes, line breaks or outer blanks of its name")
         if lean(math.radians(step["roll_deg"]), math.radians(step["pitch_deg"])) > FLATTEST:
             raise Unknown("its camera looked at the horizon or the sky")
+        if file in self._files:
+            raise Unknown("its name is that of a picture that is in the table and was written over: remove that row, "
+                          "and give each picture a name of its own")
         lat, lon = self._vehicle.gps_place_at(captured)
+        self._files.add(file)
         return (file, self._sequence, f"{1e-6 * step['time_us']:.6f}", f"{lat:.8f}", f"{lon:.8f}", str(heading_deg),
                 str(step["roll_deg"]), str(step["pitch_deg"]), str(step[_height(self._options)]),
                 *self._options.frame.values())

@@ -114,12 +114,24 @@ class Recordings(unittest.TestCase):
         self.record()
         self.fly(3.0)
         for name, pitch_deg, why in (("a,b.jpg", 0.0, "commas, quotes, line breaks"), ('"a".jpg', 0.0, "commas"),
-                                     ("a\nb.jpg", 0.0, "commas"), ("1.jpg", 81.0, "looked at the horizon")):
+                                     ("a\nb.jpg", 0.0, "commas"), ("5.jpg", 81.0, "looked at the horizon")):
             self.take(name, pitch_deg)
             self.assertIn(why, self.fly(3.0))
-            self.take("2.jpg", 79.0)
+            self.take(f"{len(self.rows())}.jpg", 79.0)
             self.assertIn("again", self.fly(3.0))
-        self.assertEqual([row[0] for row in self.rows()[1:]], 4 * ["2.jpg"])
+        self.assertEqual([row[0] for row in self.rows()[1:]], ["1.jpg", "2.jpg", "3.jpg", "4.jpg"])
+
+    def test_say_which_rows_name_pictures_that_others_were_written_over(self):
+        self.record()
+        self.fly(3.0)
+        words = ""
+        for name in ("1.jpg", "2.jpg", "1.jpg"):
+            self.take(name)
+            words += self.fly(3.0)
+        self.assertEqual([row[0] for row in self.rows()[1:]], ["1.jpg", "2.jpg"])
+        self.assertEqual(words, f"{self.folder}/1.jpg: not in {self.file}, nor are those after it: its name is that of "
+                                "a picture that is in the table and was written over: remove that row, and give each "
+                                "picture a name of its own\n")
 
     def test_find_pictures_through_links_to_their_folders(self):
         for name in ("disk/frames", "disk/tables"):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -17,6 +18,8 @@ namespace roadfix::cli {
 namespace {
 
 using evaluation::FrameTruth;
+
+constexpr std::string_view kPriorOutsideMap = "prior-outside-map";
 
 void require_cameras(const std::vector<FrameTruth>& frames) {
   const auto rectified =
@@ -55,6 +58,7 @@ class Looking {
 
   FlightFrame look_for(FrameTruth frame) const {
     const Prior prior = prior_around(frame.pose, options_);
+    search_region(map_, prior, options_.fix);  // throws where there is none, before the frame takes its time
     const auto altitude = evaluation::altitude_of(frame, prior, map_);
     auto& camera = std::get<FrameCamera>(frame.view);
     camera.agl_m = altitude.value().agl_m;
@@ -107,8 +111,9 @@ Flight look_for(const std::filesystem::path& csv, const MapView& map, const Road
       flight.frames.push_back(std::move(frame));
     } catch (const Error& error) {
       if (!is_about_input(error)) throw;
-      flight.left_out.push_back(fmt::format("{} [{}]", error.what(), error.code()));
       flight.frames.push_back({frames[i].file, error.code()});
+      if (error.code() == kPriorOutsideMap) continue;  // flights begin and end where they like
+      flight.left_out.push_back(fmt::format("{} [{}]", error.what(), error.code()));
     }
   }
   flight.registration_sigma_m = mean_registration_sigma_m(flight.frames, map);

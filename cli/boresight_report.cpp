@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "server/api/json_parts.hpp"
+
 namespace roadfix::cli {
 namespace {
 
@@ -102,6 +104,8 @@ nlohmann::json boresight_json(const BoresightReport& report) {
   const Boresight& found = report.found;
   const Attitude mount = mounted(report.mounted, found.mount());
   nlohmann::json json{
+      {"map", api::to_json(report.map)},
+      {"made_by", api::made_by()},
       {"yaw_deg", json_of(found.yaw_deg)},
       {"pitch_deg", json_of(found.pitch_deg)},
       {"roll_deg", json_of(found.roll_deg)},

@@ -11,6 +11,7 @@
 namespace roadfix::cli {
 
 struct BoresightReport {
+  MapId map;
   std::string csv;
   Flight flight;
   Boresight found;

@@ -23,6 +23,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using testing::ProgramResult;
 
 /// One town for all tests, since it takes longer than they do.
@@ -77,8 +78,9 @@ class BoresightCommand : public ::testing::Test {
   static inline testing::TemporaryFolder* folder = nullptr;
 };
 
-TEST_F(BoresightCommand, SaysHowTheCameraIsMounted) {
-  const ProgramResult result = roadfix("boresight " + path("town.gpkg") + " " + path("frames.csv") + " --json");
+TEST_F(BoresightCommand, SaysHowTheCameraIsMountedBesideWhatCountedAlready) {
+  const ProgramResult result =
+      roadfix("boresight " + path("town.gpkg") + " " + path("frames.csv") + " --mounted 90,0,0 --json");
   ASSERT_EQ(result.code, 0) << result.err;
   const nlohmann::json found = nlohmann::json::parse(result.out);
   for (const auto& [angle, degrees] : {std::pair{"yaw_deg", 4.0}, {"pitch_deg", 3.0}, {"roll_deg", -2.0}}) {
@@ -86,20 +88,26 @@ TEST_F(BoresightCommand, SaysHowTheCameraIsMounted) {
     EXPECT_LT(sigma, 0.5) << angle;
     EXPECT_NEAR(found[angle]["value"].get<double>(), degrees, 4.0 * sigma) << angle;
   }
+  EXPECT_NEAR(found["mount"]["yaw_deg"].get<double>(), 90.0 + found["yaw_deg"]["value"].get<double>(), 1e-6);
   EXPECT_NEAR(found["size"]["value"].get<double>(), 1.0, 0.02);
   EXPECT_GT(found["told_rms_m"], 15.0);
   EXPECT_LT(found["corrected_rms_m"], 4.0);
   EXPECT_FALSE(found["roll_reversed"].get<bool>() || found["pitch_reversed"].get<bool>());
   EXPECT_FALSE(found.contains("delay_s")) << "its table has no times";
+  EXPECT_EQ(found["map"]["name"], "town");
   ASSERT_EQ(found["frames"].size(), static_cast<std::size_t>(kFrames));
   EXPECT_EQ(found["frames"][0]["file"], "frame0.jpg");
 }
 
-TEST_F(BoresightCommand, SaysWhatToTellWithAMountThatCountedAlready) {
-  const ProgramResult result =
-      roadfix("boresight " + path("town.gpkg") + " " + path("frames.csv") + " --mounted 90,0,0");
-  ASSERT_EQ(result.code, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr(" of 9 frames found"), HasSubstr("--camera-yaw 9"), HasSubstr("pitch")));
+TEST_F(BoresightCommand, GoesOnWithoutFramesThatAreMissingOrBeyondTheMap) {
+  std::string rows = testing::text_of(path("frames.csv"));
+  rows.replace(rows.find("frame1.jpg"), 10, "absent.jpg");
+  const std::string table = table_of("some.csv", "", rows + "beyond.jpg,37.9,38.3,0,300,500,0,0\n");
+  const ProgramResult result = roadfix("boresight " + path("town.gpkg") + " " + table);
+  EXPECT_EQ(result.code, 1) << "for the one that is missing";
+  EXPECT_THAT(result.out, AllOf(HasSubstr(" of 10 frames found"), HasSubstr("\n  pitch "), HasSubstr("--camera-yaw ")));
+  EXPECT_THAT(result.err,
+              AllOf(HasSubstr("absent.jpg"), HasSubstr("[pictures-left-out]"), Not(HasSubstr("beyond.jpg"))));
 }
 
 TEST_F(BoresightCommand, RefusesAFlightOfWhichTooLittleIsFound) {
@@ -114,15 +122,6 @@ TEST_F(BoresightCommand, RefusesFramesOfNoCamera) {
   const std::string table =
       table_of("rectified.csv", "file,lat,lon,heading_deg,gsd_m\n", "frame0.jpg,37.76,38.27,0,0.6\n");
   EXPECT_THAT(roadfix("boresight " + path("town.gpkg") + " " + table).err, HasSubstr("[boresight-no-camera]"));
-}
-
-TEST_F(BoresightCommand, GoesOnWithoutAFrameThatIsMissingAndSaysSo) {
-  std::string rows = testing::text_of(path("frames.csv"));
-  const std::string table = table_of("missing.csv", "", rows.replace(rows.find("frame1.jpg"), 10, "absent.jpg"));
-  const ProgramResult result = roadfix("boresight " + path("town.gpkg") + " " + table);
-  EXPECT_EQ(result.code, 1);
-  EXPECT_THAT(result.out, HasSubstr("of 9 frames found"));
-  EXPECT_THAT(result.err, AllOf(HasSubstr("absent.jpg"), HasSubstr("[pictures-left-out]")));
 }
 
 }  // namespace

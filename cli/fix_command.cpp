@@ -212,8 +212,7 @@ void add_nadir_options(CLI::App& command, FixArguments& o) {
       .add_option(
           "--nadir-sigma", o.input.nadir_sigma_m,
           "How well the point below the UAV is known in the input, 1 sigma per axis in metres: the height times "
-          "the error of roll and pitch (default with --agl: 1 degree where --roll and --pitch are given, else 5; "
-          "otherwise 0)")
+          "the error of roll and pitch (default with --agl: that of --attitude-sigma, otherwise 0)")
       ->check(not_negative(1000.0));
   command
       .add_option("--nadir-heading-sigma", o.input.nadir_heading_sigma_deg,

@@ -41,7 +41,7 @@ api::FrameScale scale_of(const std::string& path, const FrameOptions& options) {
   if (options.camera_in_file) {
     const FrameCamera& told = options.camera;
     const KnownView known{told.agl_m > 0.0 ? std::optional(told.agl_m) : std::nullopt, told.roll, told.pitch,
-                          options.takeoff_agl_m};
+                          options.takeoff_agl_m, told.attitude_sigma};
     return decoded(path, [&](Bytes bytes) { return api::scale_in_file(bytes, known); });
   }
   if (!options.has_camera()) return {StraightDown{options.gsd_m}};
@@ -83,6 +83,10 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
                      "Roll of the camera in degrees, positive with the right side down; 0 = straight down");
   add_degrees_option(command, "--pitch", o.camera.pitch,
                      "Pitch of the camera in degrees, positive with the nose up; 0 = straight down (a gimbal's -90)");
+  add_degrees_option(command, "--attitude-sigma", o.camera.attitude_sigma,
+                     "How well roll and pitch of the camera are known, 1 sigma each in degrees (default: 1 where both "
+                     "are told, else 5). Ground so far off that this misplaces it by 10 m is left out")
+      ->check(positive(kLargestAttitudeSigma.degrees()));
   const auto set_principal = [&o](const std::vector<double>& at) { o.camera.principal_px.emplace(at[0], at[1]); };
   command
       .add_option_function<std::vector<double>>("--principal-px", set_principal,
@@ -113,8 +117,8 @@ void require_frame_for(const FrameOptions& options) {
   if (tells_lens && !options.has_camera()) throw CLI::RequiredError("with --fov and --focal-px: --agl");
   if (options.border == Border::kBlackUnseen && !options.given())
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
-  if ((options.camera.roll || options.camera.pitch) && !options.has_camera())
-    throw CLI::RequiredError("with --roll and --pitch one of --exif and --agl");
+  if ((options.camera.roll || options.camera.pitch || options.camera.attitude_sigma) && !options.has_camera())
+    throw CLI::RequiredError("with --roll, --pitch and --attitude-sigma one of --exif and --agl");
 }
 
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {

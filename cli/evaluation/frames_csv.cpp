@@ -82,6 +82,9 @@ FrameCamera camera_of(const Row& row) {
   }
   camera.roll = row.optional_angle("roll_deg");
   camera.pitch = row.optional_angle("pitch_deg");
+  if (const auto sigma = row.optional_number("attitude_sigma_deg", 0.0, kLargestAttitudeSigma.degrees())) {
+    camera.attitude_sigma = Angle::degrees(*sigma);
+  }
   if (row.has("principal_px")) {
     const std::vector<double> principal = row.numbers("principal_px");
     if (principal.size() != 2) row.refuse("principal_px must be two numbers with a blank between");

@@ -36,6 +36,7 @@ json camera_fields(const FrameCamera& camera) {
   json fields{{"agl_m", camera.agl_m}};
   if (camera.roll) fields["roll_deg"] = camera.roll->degrees();
   if (camera.pitch) fields["pitch_deg"] = camera.pitch->degrees();
+  if (camera.attitude_sigma) fields["attitude_sigma_deg"] = camera.attitude_sigma->degrees();
   if (camera.horizontal_fov) fields["fov_deg"] = camera.horizontal_fov->degrees();
   if (camera.focal_px) fields["focal_px"] = *camera.focal_px;
   if (camera.principal_px) fields["principal_px"] = with_commas({camera.principal_px->x, camera.principal_px->y});

@@ -15,13 +15,16 @@ namespace roadfix {
 namespace {
 
 /// How far from the nadir ground is looked at. An attitude that is off by `a` moves what lies d from there by a d^2 / h
-/// more than the ground below: far ground would contradict near ground.
-double farthest_ground_m(double agl_m) {
+/// more than the ground below: far ground would contradict near ground. Nobody tells the attitude of cameras that are
+/// meant to look down, which see little beyond kSeenByAll: they are looked at no less far than where it is told.
+double farthest_ground_m(const FrameCamera& camera) {
   constexpr double kFarthestM = 3000.0;
   constexpr double kFarthestHeights = 5.0;  // farther away the angle is too flat to see roads
   constexpr double kSeenByAll = 1.5;        // heights: the corners of what wide lenses see straight below
   constexpr double kMostMovedM = 10.0;      // about as wide as streets
-  const double moved_m = std::sqrt(kMostMovedM * agl_m / kToldAttitudeSigma.radians());
+  const double agl_m = camera.agl_m;
+  const Angle sigma = camera.attitude_sigma.value_or(kToldAttitudeSigma);
+  const double moved_m = std::sqrt(kMostMovedM * agl_m / sigma.radians());
   return std::min(kFarthestM, std::clamp(moved_m, kSeenByAll * agl_m, kFarthestHeights * agl_m));
 }
 
@@ -48,7 +51,7 @@ GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetec
   GroundView seen;
   if (const auto* camera = std::get_if<FrameCamera>(&view)) {
     const double gsd_m = std::max(nominal_m, 0.5 * detector.preferred_gsd_m());
-    seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_ground_m(camera->agl_m), max_pixels});
+    seen = rectify(frame.pixels, frame.observed, *camera, {gsd_m, farthest_ground_m(*camera), max_pixels});
   } else {
     seen = vertical_view({std::move(frame.pixels), std::move(frame.observed), nominal_m});
   }

@@ -20,9 +20,10 @@ inline constexpr double kFinestGsdM = 0.001;
 void require_roads_visible(double gsd_m);
 
 /// The ground that the frame shows. Frames of a camera are rectified in pixels as fine as the detector can use, as far
-/// from the nadir point as an error of the attitude (kToldAttitudeSigma) moves ground by no more than 10 m against that
-/// below: 1.5 to 5 times the camera's height, and 3 km at most. A painted border (painted_border.hpp) and blank areas
-/// (blank_ground.hpp) count as not seen. Throws what rectify() and require_roads_visible() do.
+/// from the nadir point as an error of the attitude (FrameCamera::attitude_sigma, else kToldAttitudeSigma) moves ground
+/// by no more than 10 m against that below: 1.5 to 5 times the camera's height, and 3 km at most. A painted border
+/// (painted_border.hpp) and blank areas (blank_ground.hpp) count as not seen. Throws what rectify() and
+/// require_roads_visible() do.
 GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels);
 
 /// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.

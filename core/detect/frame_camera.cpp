@@ -37,10 +37,6 @@ double lean(const FrameCamera& camera) {
   return std::sqrt(1.0 - steep * steep) / steep;
 }
 
-Angle attitude_sigma(const FrameCamera& camera) {
-  return camera.roll && camera.pitch ? kToldAttitudeSigma : kUntoldAttitudeSigma;
-}
-
 }  // namespace
 
 void validate(const FrameCamera& camera, cv::Size frame) {
@@ -54,6 +50,9 @@ void validate(const FrameCamera& camera, cv::Size frame) {
   require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
   require_camera(std::abs(camera.assumed_roll().degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
   require_camera(std::abs(camera.assumed_pitch().degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
+  require_camera(
+      !camera.attitude_sigma || (*camera.attitude_sigma > Angle() && *camera.attitude_sigma <= kLargestAttitudeSigma),
+      "attitude_sigma_deg", "(0, 20] degrees");
   const bool calibrated = camera.principal_px || camera.lens != LensModel::kPerspective || !camera.distortion.empty();
   if (calibrated && !camera.focal_px) {
     throw InvalidInput(
@@ -107,6 +106,11 @@ double nominal_gsd_m(const FrameView& view, cv::Size frame) {
   const auto& camera = std::get<FrameCamera>(view);
   validate(camera, frame);
   return camera.agl_m / lens_of(camera, frame).focal_px();
+}
+
+Angle attitude_sigma(const FrameCamera& camera) {
+  if (camera.attitude_sigma) return *camera.attitude_sigma;
+  return camera.roll && camera.pitch ? kToldAttitudeSigma : kUntoldAttitudeSigma;
 }
 
 double nadir_sigma_m(const FrameCamera& camera) {

@@ -19,6 +19,8 @@ namespace roadfix {
 inline constexpr Angle kToldAttitudeSigma = Angle::degrees(1.0);
 /// Where nobody tells them, and straight down is assumed: a multirotor without a gimbal leans that far in a breeze.
 inline constexpr Angle kUntoldAttitudeSigma = Angle::degrees(5.0);
+/// Nobody who means it tells more.
+inline constexpr Angle kLargestAttitudeSigma = Angle::degrees(20.0);
 
 /// What is known about the camera when the frame was taken.
 struct FrameCamera {
@@ -34,6 +36,8 @@ struct FrameCamera {
   double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
   std::optional<Angle> roll;       ///< nullopt = unknown: taken as zero, with a larger error
   std::optional<Angle> pitch;
+  /// Of roll and pitch, 1 sigma each, in (0, kLargestAttitudeSigma]; nullopt = as mostly where they are told, or not.
+  std::optional<Angle> attitude_sigma;
 
   Angle assumed_roll() const { return roll.value_or(Angle()); }
   Angle assumed_pitch() const { return pitch.value_or(Angle()); }
@@ -67,6 +71,9 @@ void require_looking_down(const FrameCamera& camera);
 
 /// Ground sample distance straight below the UAV with the camera level. Throws as validate().
 double nominal_gsd_m(const FrameView& view, cv::Size frame);
+
+/// Of roll and pitch, 1 sigma each.
+Angle attitude_sigma(const FrameCamera& camera);
 
 /// Relative, 1 sigma: barometers drift, and the ground is not as flat as it is told to be.
 inline constexpr double kHeightSigma = 0.05;

@@ -12,8 +12,8 @@ PLACE = ("north_m", "east_m", "yaw_deg")
 LENS_FIELDS = ("fov_deg", "focal_px")
 CAMERA_FIELDS = (*LENS_FIELDS, "gsd_m", "exif")
 PICTURE_FIELDS = CAMERA_FIELDS + ("kind", "cell_m", "unobserved", "agl_m", "takeoff_alt_m", "roll_deg", "pitch_deg",
-                                  "principal_px", "lens", "distortion", "nadir_col", "nadir_row", "nadir_sigma_m",
-                                  "nadir_heading_sigma_deg")
+                                  "attitude_sigma_deg", "principal_px", "lens", "distortion", "nadir_col", "nadir_row",
+                                  "nadir_sigma_m", "nadir_heading_sigma_deg")
 POSITION_FIELDS = ("covariance", "alt_m", "camera_yaw_deg", "satellites", "system", "sensor", "component")
 
 

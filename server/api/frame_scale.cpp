@@ -17,6 +17,7 @@ using http::InvalidField;
 constexpr Range kGsd{kFinestGsdM, kCoarsestGsdM};
 constexpr Range kHeight{0.0, 20'000.0, true};
 constexpr Range kQuarterTurn{-90.0, 90.0};
+constexpr Range kAttitudeSigma{0.0, kLargestAttitudeSigma.degrees(), true};
 constexpr std::array<Word<LensModel>, 2> kLenses{
     {{"perspective", LensModel::kPerspective}, {"fisheye", LensModel::kFisheye}}};
 
@@ -26,7 +27,7 @@ const std::vector<std::string>& lens_fields() {
 }
 
 const std::vector<std::string>& view_fields() {
-  static const std::vector<std::string> kFields{"agl_m", "roll_deg", "pitch_deg"};
+  static const std::vector<std::string> kFields{"agl_m", "roll_deg", "pitch_deg", "attitude_sigma_deg"};
   return kFields;
 }
 
@@ -36,6 +37,10 @@ void refuse(const Fields& fields, const std::vector<std::string>& names, std::st
       throw InvalidField("bad-parameter", name, fmt::format("'{}' cannot be combined with {}", name, why));
     }
   }
+}
+
+std::optional<Angle> told_attitude_sigma(const Fields& fields) {
+  return fields.optional_angle("attitude_sigma_deg", kAttitudeSigma);
 }
 
 FrameCamera told_camera(const Fields& fields) {
@@ -56,12 +61,14 @@ FrameCamera told_camera(const Fields& fields) {
   camera.agl_m = fields.number("agl_m", kHeight);
   camera.roll = fields.optional_angle("roll_deg", kQuarterTurn);
   camera.pitch = fields.optional_angle("pitch_deg", kQuarterTurn);
+  camera.attitude_sigma = told_attitude_sigma(fields);
   return camera;
 }
 
 KnownView known_view(const Fields& fields) {
   return {told_agl_m(fields), fields.optional_angle("roll_deg", kQuarterTurn),
-          fields.optional_angle("pitch_deg", kQuarterTurn), fields.optional_number(kTakeoffAgl, {})};
+          fields.optional_angle("pitch_deg", kQuarterTurn), fields.optional_number(kTakeoffAgl, {}),
+          told_attitude_sigma(fields)};
 }
 
 }  // namespace
@@ -94,6 +101,7 @@ nlohmann::json to_json(const FrameCamera& camera) {
   nlohmann::json answer{{"agl_m", camera.agl_m},
                         {"roll_deg", camera.roll.value().degrees()},
                         {"pitch_deg", camera.pitch.value().degrees()}};
+  if (camera.attitude_sigma) answer["attitude_sigma_deg"] = camera.attitude_sigma->degrees();
   if (camera.focal_px) answer["focal_px"] = *camera.focal_px;
   if (camera.principal_px) answer["principal_px"] = {camera.principal_px->x, camera.principal_px->y};
   if (!camera.distortion.empty()) answer["distortion"] = camera.distortion;

@@ -177,6 +177,15 @@ TEST_F(FramesCommand, TellsOtherCommandsTheCameraOfAFrame) {
               HasSubstr("[camera-not-in-file]"));
 }
 
+TEST_F(FramesCommand, TellsOtherCommandsHowWellTheAttitudeOfAPhotoIsKnown) {
+  picture("0001.jpg", tags(118.0));
+  const std::string file = "'" + (folder / "flight 1" / "0001.jpg").string() + "'";
+  const nlohmann::json known = detected(folder.path(), file + " --exif --attitude-sigma 3");
+  const double degree_m = detected(folder.path(), file + " --exif")["nadir_sigma_m"];
+  EXPECT_NEAR(known["nadir_sigma_m"].get<double>(), 3.0 * degree_m, 0.05 * degree_m);
+  EXPECT_EQ(known, detected(folder.path(), file + " --focal-px 100 --agl 118 --roll 0 --pitch 3 --attitude-sigma 3"));
+}
+
 TEST_F(FramesCommand, AsksWhereACameraLookedOfWhichTheFileDoesNotTellIt) {
   picture("0001.jpg", "drone-dji:RelativeAltitude=\"+118\" drone-dji:CalibratedFocalLength=\"100\"");
   const std::string file = "'" + (folder / "flight 1" / "0001.jpg").string() + "'";
@@ -187,7 +196,10 @@ TEST_F(FramesCommand, AsksWhereACameraLookedOfWhichTheFileDoesNotTellIt) {
   }
   EXPECT_EQ(detected(folder.path(), file + " --exif --roll 0 --pitch 3"),
             detected(folder.path(), file + " --focal-px 100 --agl 118 --roll 0 --pitch 3"));
-  EXPECT_EQ(run_program(folder.path(), "detect --gsd 1 --roll 0 " + file + " roads.png").code, 2);
+  for (const char* wrong : {"--gsd 1 --roll 0 ", "--gsd 1 --attitude-sigma 2 ", "--exif --attitude-sigma 0 ",
+                            "--exif --attitude-sigma 20.1 "}) {
+    EXPECT_EQ(run_program(folder.path(), std::string("detect ") + wrong + file + " roads.png").code, 2) << wrong;
+  }
 }
 
 TEST_F(FramesCommand, RefusesWhereThereIsNothingToRead) {

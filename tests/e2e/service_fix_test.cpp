@@ -275,6 +275,12 @@ TEST_F(ServiceFix, TurnsFramesIntoFeatureMapsAndFixes) {
       "/v1/detect?fov_deg=60&agl_m=200&roll_deg=0&pitch_deg=10&format=json", testing::text_of(png), "image/png"));
   EXPECT_GT(features["cols"], 50);
   EXPECT_NEAR(features["nadir_sigma_m"], 4.01, 0.01) << "a degree at 200 m, and 5 % of 35 m";
+  const auto known_to = [&](const std::string& sigma_deg) {
+    const std::string query = "fov_deg=60&agl_m=200&roll_deg=0&pitch_deg=10&attitude_sigma_deg=" + sigma_deg;
+    return client_.Post("/v1/detect?format=json&" + query, testing::text_of(png), "image/png");
+  };
+  EXPECT_NEAR(testing::json_of(known_to("2"))["nadir_sigma_m"], 7.41, 0.01) << "two degrees, and 5 % of 35 m";
+  EXPECT_EQ(testing::refusal(known_to("0")), "400 parameter-out-of-range attitude_sigma_deg");
   json posted_back = features;
   const auto located = client_.Post("/v1/maps/town/fix", posted_back.dump(), "application/json");
   EXPECT_EQ(located->status, 200) << located->body;

@@ -268,6 +268,7 @@ FrameCamera camera_of(const DronePicture& picture, const KnownView& known) {
         "where its camera looked (GimbalPitchDegree, CameraPitchDegree or Camera:Pitch, with yaw and roll): give both "
         "roll and pitch besides (--roll and --pitch, or roll_deg and pitch_deg), 0 and 0 if it looked straight down");
   }
+  camera.attitude_sigma = known.attitude_sigma;
   return camera;
 }
 

@@ -44,6 +44,7 @@ struct KnownView {
   std::optional<Angle> pitch;
   /// How much higher the place of the take-off lies than the ground below; of use without `agl_m`.
   std::optional<double> takeoff_agl_m = {};
+  std::optional<Angle> attitude_sigma = {};  ///< FrameCamera::attitude_sigma
 };
 
 /// Height above the place of the take-off. Throws InvalidInput "camera-not-in-file" where none is told.

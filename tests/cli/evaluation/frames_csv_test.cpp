@@ -62,9 +62,10 @@ TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {
 
 TEST(FramesCsv, DescribesTheCameraOfAFrame) {
   const auto frames = parse_frames_csv(
-      "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,roll_deg,pitch_deg,principal_px,lens,distortion\n"
+      "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,roll_deg,pitch_deg,principal_px,lens,distortion,"
+      "attitude_sigma_deg\n"
       "a,1,1,0,0.5\n"
-      "b,1,1,0,,120,84,,1.5,-3\n"
+      "b,1,1,0,,120,84,,1.5,-3,,,,0.2\n"
       "c,1,1,0,,300,,1000,,,811 588.5,fisheye,-0.28  0.08 1e-3 0\n");
   EXPECT_TRUE(std::holds_alternative<StraightDown>(frames.at(0).view));
   const FrameCamera simple = std::get<FrameCamera>(frames.at(1).view);
@@ -72,13 +73,14 @@ TEST(FramesCsv, DescribesTheCameraOfAFrame) {
   EXPECT_EQ(simple.horizontal_fov, Angle::degrees(84));
   EXPECT_EQ(simple.roll, Angle::degrees(1.5));
   EXPECT_EQ(simple.pitch, Angle::degrees(-3));
+  EXPECT_EQ(simple.attitude_sigma, Angle::degrees(0.2));
   EXPECT_FALSE(simple.focal_px || simple.principal_px);
   const FrameCamera calibrated = std::get<FrameCamera>(frames.at(2).view);
   EXPECT_EQ(calibrated.focal_px, 1000.0);
   EXPECT_EQ(calibrated.principal_px, cv::Point2d(811, 588.5));
   EXPECT_EQ(calibrated.lens, LensModel::kFisheye);
   EXPECT_EQ(calibrated.distortion, (std::vector{-0.28, 0.08, 1e-3, 0.0}));
-  EXPECT_FALSE(calibrated.roll || calibrated.pitch);
+  EXPECT_FALSE(calibrated.roll || calibrated.pitch || calibrated.attitude_sigma);
 }
 
 TEST(FramesCsv, TellsTheHeightAboveTheSeaOfACamera) {
@@ -104,7 +106,8 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   complaint("file,lat,lon,heading_deg\na,1,1,0\n", "neither");
   const auto of_the_camera = [&](const std::string& row, const char* part) {
     const std::string header =
-        "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,principal_px,lens,distortion,alt_m\n";
+        "file,lat,lon,heading_deg,gsd_m,agl_m,fov_deg,focal_px,principal_px,lens,distortion,alt_m,"
+        "attitude_sigma_deg\n";
     complaint((header + "a,1,1,0," + row + "\n").c_str(), part);
   };
   of_the_camera(",,84", "give gsd_m");
@@ -118,6 +121,7 @@ TEST(FramesCsv, ComplaintsNameLineAndColumn) {
   of_the_camera(",120,,1000,800", "principal_px must be two numbers");
   of_the_camera(",120,,1000,,pinhole", "lens is 'pinhole'");
   of_the_camera(",120,,1000,,,0.1 x", "distortion is 'x'");
+  of_the_camera(",120,84,,,,,,25", "attitude_sigma_deg is '25'; it must be a number within 0 to 20");
 }
 
 }  // namespace

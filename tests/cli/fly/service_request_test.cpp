@@ -60,6 +60,8 @@ TEST(StepRequest, OfAFrameTellsWhatWasToldOfItsAttitudeAndNoMore) {
   told.pitch.reset();
   EXPECT_THAT(step_request(seen_by(told)).query, HasSubstr("roll_deg=-4.0"));
   EXPECT_THAT(step_request(seen_by(told)).query, Not(HasSubstr("pitch_deg")));
+  told.attitude_sigma = Angle::degrees(0.5);
+  EXPECT_THAT(step_request(seen_by(told)).query, HasSubstr("attitude_sigma_deg=0.5"));
 }
 
 TEST(StepRequest, IsAPictureDescribedInTheQuery) {

@@ -57,10 +57,15 @@ TEST(NadirSigma, IsWhatSmallErrorsOfAttitudeAndHeightMoveTheGroundInViewBy) {
     higher.agl_m *= 1.0 + 0.01 * kHeightSigma;
     const double told_m = std::hypot(moved_m(turned), moved_m(higher));
     const double untold_m = std::hypot(5.0 * moved_m(turned), moved_m(higher));
+    const double told_to_two_m = std::hypot(2.0 * moved_m(turned), moved_m(higher));
     camera.roll = Angle();
     EXPECT_NEAR(nadir_sigma_m(camera), told_m, 0.002 * told_m) << pitch_deg;
     camera.roll.reset();
     EXPECT_NEAR(nadir_sigma_m(camera), untold_m, 0.002 * untold_m) << pitch_deg;
+    camera.attitude_sigma = Angle::degrees(2.0);
+    EXPECT_NEAR(nadir_sigma_m(camera), told_to_two_m, 0.002 * told_to_two_m) << pitch_deg;
+    camera.roll = Angle();
+    EXPECT_NEAR(nadir_sigma_m(camera), told_to_two_m, 0.002 * told_to_two_m) << pitch_deg;
   }
 }
 
@@ -116,10 +121,11 @@ class DrawnRoads {
   std::mt19937 random_;
 };
 
-/// Root of the mean square over cameras that lean by `lean` anywhere, and of which what is told is as wrong as assumed.
-double drawn_turn_rad(Angle lean, bool told_attitude) {
+/// Root of the mean square over cameras that lean by `lean` anywhere, of which roll and pitch are told with such
+/// errors, and the height with one as large as assumed.
+double drawn_turn_rad(Angle lean, Angle attitude_sigma) {
   constexpr int kDraws = 500;
-  const double sigma = (told_attitude ? kToldAttitudeSigma : kUntoldAttitudeSigma).radians();
+  const double sigma = attitude_sigma.radians();
   DrawnRoads roads(7);
   double squares = 0.0;
   for (int i = 0; i < kDraws; ++i) {
@@ -143,10 +149,13 @@ TEST(NadirHeadingSigma, IsHowFarErrorsOfAttitudeAndHeightTurnRoadsDrawnAtRandom)
     FrameCamera camera = level_camera();
     camera.roll = Angle();
     camera.pitch = Angle::degrees(lean_deg);
-    const double drawn_rad = drawn_turn_rad(*camera.pitch, true);
+    const double drawn_rad = drawn_turn_rad(*camera.pitch, kToldAttitudeSigma);
     EXPECT_NEAR(nadir_heading_sigma(camera).radians(), drawn_rad, 0.25 * drawn_rad) << lean_deg;
+    camera.attitude_sigma = Angle::degrees(3.0);
+    const double drawn_of_three_rad = drawn_turn_rad(*camera.pitch, *camera.attitude_sigma);
+    EXPECT_NEAR(nadir_heading_sigma(camera).radians(), drawn_of_three_rad, 0.25 * drawn_of_three_rad) << lean_deg;
   }
-  const double drawn_rad = drawn_turn_rad(Angle(), false);
+  const double drawn_rad = drawn_turn_rad(Angle(), kUntoldAttitudeSigma);
   EXPECT_NEAR(nadir_heading_sigma(level_camera()).radians(), drawn_rad, 0.25 * drawn_rad) << "nobody told the attitude";
 }
 
@@ -190,6 +199,19 @@ TEST(FrameCamera, IsRefusedWithACalibrationOfFramesOfAnotherSize) {
   }
   camera.principal_px = {200.0, 350.0};
   EXPECT_NO_THROW(validate(camera, kFrame));
+}
+
+TEST(FrameCamera, IsRefusedWhereItsAttitudeIsKnownToNothingOrToMoreThanAnybodyTells) {
+  FrameCamera camera = level_camera();
+  for (const double sigma_deg : {0.0, -1.0, 20.1, std::numeric_limits<double>::quiet_NaN()}) {
+    camera.attitude_sigma = Angle::degrees(sigma_deg);
+    EXPECT_THAT(testing::message_of([&] { validate(camera, kFrame); }), ::testing::HasSubstr("attitude_sigma_deg"))
+        << sigma_deg;
+  }
+  for (const double sigma_deg : {0.01, 20.0}) {
+    camera.attitude_sigma = Angle::degrees(sigma_deg);
+    EXPECT_NO_THROW(validate(camera, kFrame)) << sigma_deg;
+  }
 }
 
 TEST(FrameCamera, NeedsTheFocalLengthOfACalibration) {

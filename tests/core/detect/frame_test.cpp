@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <optional>
 
 #include "tests/core/detect/level_camera.hpp"
 #include "tests/support/code_of.hpp"
@@ -45,28 +46,40 @@ TEST(GroundSeen, HasThePixelsOfTheFrameUnlessTheDetectorMakesNoUseOfThem) {
 }
 
 /// How far ahead a camera sees that has the horizon in the frame.
-double reach_m(double agl_m) {
+double reach_m(double agl_m, std::optional<Angle> attitude_sigma = {}) {
   cv::Mat pixels(kFrame, CV_8UC1);
   cv::randu(pixels, 0, 255);
   FrameCamera camera = level_camera();
   camera.pitch = Angle::degrees(60);
   camera.agl_m = agl_m;
+  camera.attitude_sigma = attitude_sigma;
   const HalfMetreDetector detector;
   const GroundView view = ground_seen({pixels, cv::Mat(kFrame, CV_8UC1, cv::Scalar(255))}, camera, detector, 4e7);
   EXPECT_LE(view.image.pixels.cols * view.image.gsd_m, 2.0 * view.nadir_px.y * view.image.gsd_m + 2.0);
   return view.nadir_px.y * view.image.gsd_m;
 }
 
+/// How much more that is than the ground below.
+double moved_m(double far_m, double agl_m, Angle pitch) {
+  return agl_m * (std::tan(std::atan(far_m / agl_m) + pitch.radians()) - std::tan(pitch.radians())) - far_m;
+}
+
 TEST(GroundSeen, ReachesAsFarAsADegreeOfPitchMovesItHardlyMoreThanTheGroundBelow) {
   for (const double agl_m : {30.0, 60.0, 120.0}) {
-    const double far_m = reach_m(agl_m);
-    const double degree = Angle::degrees(1.0).radians();
-    const double moved_m = agl_m * (std::tan(std::atan(far_m / agl_m) + degree) - std::tan(degree)) - far_m;
-    EXPECT_NEAR(moved_m, 10.0, 1.0) << agl_m;
+    EXPECT_NEAR(moved_m(reach_m(agl_m), agl_m, Angle::degrees(1.0)), 10.0, 1.0) << agl_m;
+  }
+}
+
+TEST(GroundSeen, ReachesFartherTheBetterTheAttitudeIsKnown) {
+  for (const double sigma_deg : {0.5, 2.0}) {
+    const Angle sigma = Angle::degrees(sigma_deg);
+    EXPECT_NEAR(moved_m(reach_m(90.0, sigma), 90.0, sigma), 10.0, 1.0) << sigma_deg;
   }
 }
 
 TEST(GroundSeen, ReachesFiveHeightsAtMostAndOneAndAHalfAtLeast) {
+  EXPECT_NEAR(reach_m(120.0, Angle::degrees(0.1)), 600.0, 2.0);
+  EXPECT_NEAR(reach_m(60.0, Angle::degrees(10.0)), 90.0, 1.0);
   EXPECT_NEAR(reach_m(15.0), 75.0, 1.0);
   EXPECT_NEAR(reach_m(400.0), 600.0, 2.0);
 }

@@ -41,7 +41,8 @@ TEST(FrameScale, IsToldDirectlyOfAFrameSeenFromStraightAbove) {
 TEST(FrameScale, IsNotToldTwice) {
   const json of_a_camera{{"fov_deg", 60},     {"focal_px", 900}, {"principal_px", {960, 540}},
                          {"lens", "fisheye"}, {"agl_m", 120},    {"distortion", {0.1, 0, 0, 0}},
-                         {"roll_deg", 0},     {"pitch_deg", 0},  {"exif", true}};
+                         {"roll_deg", 0},     {"pitch_deg", 0},  {"attitude_sigma_deg", 2},
+                         {"exif", true}};
   EXPECT_EQ(of_a_camera.size() + 1, frame_scale_fields().size()) << "all but gsd_m";
   for (const auto& [name, value] : of_a_camera.items()) {
     EXPECT_EQ(refused_scale({{"gsd_m", 0.5}, {name, value}}), "bad-parameter " + name);
@@ -91,6 +92,8 @@ TEST(FrameScale, TellsAnAttitudeOfZeroFromOneThatNobodyTold) {
   EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}}), 5.0 * degree_m, 1e-9);
   EXPECT_NEAR(nadir_sigma_of({{"pitch_deg", 0}}), 5.0 * degree_m, 1e-9);
   EXPECT_NEAR(nadir_sigma_of(json::object()), 5.0 * degree_m, 1e-9);
+  EXPECT_NEAR(nadir_sigma_of({{"attitude_sigma_deg", 2}}), 2.0 * degree_m, 1e-9) << "how far it may lean";
+  EXPECT_NEAR(nadir_sigma_of({{"roll_deg", 0}, {"pitch_deg", 0}, {"attitude_sigma_deg", 0.2}}), 0.2 * degree_m, 1e-9);
   const json leaning = to_json(camera_of(told({{"roll_deg", -3}, {"pitch_deg", 20}})));
   EXPECT_NEAR(leaning["roll_deg"].get<double>(), -3.0, 1e-12);
   EXPECT_NEAR(leaning["pitch_deg"].get<double>(), 20.0, 1e-12);
@@ -103,7 +106,7 @@ TEST(FrameScale, TakesNumbersUpToTheEndsOfTheirRanges) {
     EXPECT_EQ(refused_scale(told({{name, most}})), "nothing") << name;
     EXPECT_EQ(refused_scale(told({{name, most + 0.01}})), std::string("parameter-out-of-range ") + name);
   }
-  for (const auto& [name, most] : {std::pair{"agl_m", 20'000.0}, {"fov_deg", 179.0}}) {
+  for (const auto& [name, most] : {std::pair{"agl_m", 20'000.0}, {"fov_deg", 179.0}, {"attitude_sigma_deg", 20.0}}) {
     EXPECT_EQ(refused_scale(told({{name, 0}})), std::string("parameter-out-of-range ") + name);
     EXPECT_EQ(refused_scale(told({{name, most}})), "nothing") << name;
     EXPECT_EQ(refused_scale(told({{name, most + 0.01}})), std::string("parameter-out-of-range ") + name);
@@ -116,7 +119,8 @@ TEST(FrameScale, OfAPhotoIsReadBackFromWhatIsToldOfIt) {
       "drone-dji:RelativeAltitude=\"+40.00\" drone-dji:GimbalYawDegree=\"12\" drone-dji:GimbalPitchDegree=\"-80\" "
       "drone-dji:GimbalRollDegree=\"2\" drone-dji:DewarpFlag=\"0\" "
       "drone-dji:DewarpData=\"2021-05-11;30,30,1.5,-0.5,-0.112,0.015,0.0001,-0.0003,-0.028\"");
-  const FrameScale scale = scale_of({{"exif", true}}, photo);
+  EXPECT_FALSE(to_json(std::get<FrameCamera>(scale_of({{"exif", true}}, photo).view)).contains("attitude_sigma_deg"));
+  const FrameScale scale = scale_of({{"exif", true}, {"attitude_sigma_deg", 0.5}}, photo);
   EXPECT_TRUE(scale.in_file);
   const FrameCamera& in_file = std::get<FrameCamera>(scale.view);
   ASSERT_TRUE(in_file.principal_px && in_file.distortion.size() == 5U);
@@ -126,7 +130,7 @@ TEST(FrameScale, OfAPhotoIsReadBackFromWhatIsToldOfIt) {
   EXPECT_EQ(again.principal_px, in_file.principal_px);
   EXPECT_EQ(again.distortion, in_file.distortion);
   EXPECT_EQ(again.agl_m, in_file.agl_m);
-  for (const char* name : {"roll_deg", "pitch_deg"}) {
+  for (const char* name : {"roll_deg", "pitch_deg", "attitude_sigma_deg"}) {
     EXPECT_NEAR(to_json(again)[name].get<double>(), said[name].get<double>(), 1e-12) << name;
   }
 }

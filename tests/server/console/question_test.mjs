@@ -13,7 +13,7 @@ await run({
     assert.deepEqual(asked({ what: 'gsd', gsd_m: '0.5', confidence: '0.99' }), { kind: 'frame', gsd_m: '0.5', confidence: '0.99' });
   },
   'what is left empty is not told'() {
-    assert.deepEqual(asked({ what: 'camera', fov_deg: '78', focal_px: '', agl_m: '300', roll_deg: '', pitch_deg: '0', scale_percent: '' }),
+    assert.deepEqual(asked({ what: 'camera', fov_deg: '78', focal_px: '', agl_m: '300', roll_deg: '', pitch_deg: '0', attitude_sigma_deg: '', scale_percent: '' }),
       { kind: 'frame', fov_deg: '78', agl_m: '300', pitch_deg: '0' });
     assert.deepEqual(asked({ what: 'cells', cell_m: '' }), { kind: 'feature_map' });
   },

@@ -190,6 +190,8 @@ TEST(DronePicture, LookedWhereItIsToldOrElseWhereItsFileSays) {
   const FrameCamera told = camera_of(picture, {100.0, Angle::degrees(5.0), Angle::degrees(-6.0)});
   EXPECT_NEAR(told.roll.value().degrees(), 5.0, 1e-9);
   EXPECT_NEAR(told.pitch.value().degrees(), -6.0, 1e-9);
+  EXPECT_FALSE(told.attitude_sigma);
+  EXPECT_EQ(camera_of(picture, {100.0, {}, {}, {}, Angle::degrees(0.5)}).attitude_sigma, Angle::degrees(0.5));
 }
 
 TEST(DronePicture, HasTheFocalLengthOfItsFieldOfViewInThePixelsThatItHas) {

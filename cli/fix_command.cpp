@@ -240,12 +240,11 @@ void add_fix_command(CLI::App& app) {
   command
       ->add_option(
           "--alt", o->alt_m,
-          "Height above the sea in metres, in place of --agl with --fov or --focal-px, where the map knows how "
+          "Height above the sea in metres, in place of --agl with --fov, --focal-px or --exif, where the map knows how "
           "high its ground is (roadfix terrain)")
       ->check(between(api::kAltitude.min, api::kAltitude.max))
       ->excludes("--agl")
       ->excludes("--gsd")
-      ->excludes("--exif")
       ->excludes("--cell");
   command
       ->add_option("--takeoff-alt", o->takeoff_alt_m,
@@ -253,7 +252,8 @@ void add_fix_command(CLI::App& app) {
                    "take-off then gives that above the sea, where the map knows how high its ground is")
       ->check(between(api::kAltitude.min, api::kAltitude.max))
       ->needs("--exif")
-      ->excludes("--agl");
+      ->excludes("--agl")
+      ->excludes("--alt");
   add_prior_options(*command, *o);
   command
       ->add_option("--confidence", o->fix.confidence,

@@ -1,5 +1,6 @@
 #include "server/api/altitude_request.hpp"
 
+#include "core/units/error.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/frame_scale.hpp"
 #include "server/api/position_answer.hpp"
@@ -28,6 +29,16 @@ std::optional<Altitude> take_takeoff(Content& content, double takeoff_alt_m, con
   return taken.altitude;
 }
 
+/// nullopt where the map does not know the heights of its ground: alt_m is for the autopilot alone then.
+std::optional<double> agl_of_photo(double above_sea_m, const AglOf& agl_of) {
+  try {
+    return agl_of(above_sea_m);
+  } catch (const InvalidInput& error) {
+    if (error.code() != "terrain-missing") throw;
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 const std::vector<std::string>& altitude_fields() {
@@ -38,13 +49,14 @@ const std::vector<std::string>& altitude_fields() {
 std::optional<Altitude> take_altitude(Content& content, const AglOf& agl_of) {
   Fields& fields = content.fields;
   if (const auto alt_m = fields.optional_number(kTakeoffAlt, kAltitude)) return take_takeoff(content, *alt_m, agl_of);
-  if (!is_frame(fields) || fields.flag("exif") || fields.has("gsd_m")) return std::nullopt;
+  if (!is_frame(fields) || fields.has("gsd_m")) return std::nullopt;
   if (const auto agl_m = told_agl_m(fields)) return Altitude{std::nullopt, *agl_m};
   const auto above_sea_m = told_altitude_m(fields);
   if (!above_sea_m) return std::nullopt;
-  const double agl_m = agl_of(*above_sea_m);
-  fields.set_number("agl_m", agl_m);
-  return Altitude{above_sea_m, agl_m};
+  const auto agl_m = fields.flag("exif") ? agl_of_photo(*above_sea_m, agl_of) : agl_of(*above_sea_m);
+  if (!agl_m) return std::nullopt;
+  fields.set_number("agl_m", *agl_m);
+  return Altitude{above_sea_m, *agl_m};
 }
 
 AboveTakeoff above_takeoff(std::span<const std::uint8_t> photo, double takeoff_alt_m, const AglOf& agl_of) {

@@ -20,9 +20,10 @@ using AglOf = std::function<double(double above_sea_m)>;
 /// Names that may be in the query of a request whose frame takes its size from the ground of a map.
 const std::vector<std::string>& altitude_fields();
 
-/// Of a camera's frame, by `agl_m`, or by `alt_m` alone; of a drone's photo, by `takeoff_alt_m` and its file: the
-/// fields tell a height above ground from then on, the one that `agl_of` gives. nullopt where the size of what is sent
-/// is told otherwise. Throws InvalidField, what `agl_of` throws and what above_takeoff() does.
+/// Of a camera's frame, by `agl_m`, or by `alt_m` alone; of a drone's photo by these, too, or by `takeoff_alt_m` and
+/// its file: the fields tell a height above ground from then on, the one that `agl_of` gives. nullopt where the size of
+/// what is sent is told otherwise: that of a photo by its file, which counts for more than `alt_m` where the map knows
+/// no heights ("terrain-missing" of `agl_of`). Throws InvalidField, what `agl_of` throws and what above_takeoff() does.
 std::optional<Altitude> take_altitude(Content& content, const AglOf& agl_of);
 
 /// A drone's photo whose take-off lay so high above the sea.

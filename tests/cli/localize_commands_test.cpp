@@ -189,13 +189,18 @@ TEST_F(LocalizeCommands, FixMeasuresPhotosByTheGroundOfTheMapWhereThatOfTheirTak
     return roadfix("fix " + map.string() + " " + (folder / "flight").string() + "/" + name + " --exif --json " +
                    at(place) + " --radius 100 " + told);
   };
-  EXPECT_THAT(fix("", "--takeoff-alt 500").err, HasSubstr("roadfix: the map town does not know how high"));
+  for (const char* told : {"--takeoff-alt 500", "--alt 800"}) {
+    EXPECT_THAT(fix("", told).err, HasSubstr("roadfix: the map town does not know how high")) << told;
+  }
   lay_level_ground(700.0);
   const auto by_takeoff = nlohmann::json::parse(fix("a.jpg", "--takeoff-alt 500").out);
   const auto by_height = nlohmann::json::parse(fix("a.jpg", "--agl 100").out);
   ASSERT_FALSE(by_takeoff["modes"].empty()) << by_takeoff;
   EXPECT_NEAR(by_takeoff["modes"][0]["agl_m"].get<double>(), 100.0, 1e-6);
   EXPECT_EQ(by_takeoff["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  const auto by_altitude = nlohmann::json::parse(fix("a.jpg", "--alt 800").out);
+  EXPECT_NEAR(by_altitude["camera"]["agl_m"].get<double>(), 100.0, 1e-6) << "whatever its file says";
+  EXPECT_EQ(by_altitude["modes"], by_takeoff["modes"]);
   const ProgramResult all = fix("", "--takeoff-alt 500");
   EXPECT_EQ(all.code, 1);
   std::istringstream lines(all.out);
@@ -206,7 +211,9 @@ TEST_F(LocalizeCommands, FixMeasuresPhotosByTheGroundOfTheMapWhereThatOfTheirTak
   }
   EXPECT_THAT(all.err, HasSubstr("c.jpg is left out: the picture's file does not tell its height above the take-off"));
   EXPECT_THAT(fix("b.jpg", "--takeoff-alt 400").err, HasSubstr("[below-ground]"));
-  EXPECT_EQ(fix("a.jpg", "--takeoff-alt 500 --agl 100").code, 2);
+  for (const char* told_twice : {"--agl 100", "--alt 800"}) {
+    EXPECT_EQ(fix("a.jpg", std::string("--takeoff-alt 500 ") + told_twice).code, 2) << told_twice;
+  }
   EXPECT_EQ(roadfix("fix " + input + "--takeoff-alt 500").code, 2) << "of a feature map";
 }
 
@@ -227,7 +234,7 @@ TEST_F(LocalizeCommands, FixMeasuresAFrameByTheGroundOfTheMapWhereItsHeightAbove
   ASSERT_FALSE(by_altitude["modes"].empty()) << by_altitude;
   EXPECT_NEAR(by_altitude["modes"][0]["agl_m"].get<double>(), 300.0, 1e-6);
   EXPECT_EQ(by_altitude["modes"][0]["pose"], by_height["modes"][0]["pose"]);
-  for (const char* besides : {"--agl 300", "--gsd 1", "--exif", "--cell 2"}) {
+  for (const char* besides : {"--agl 300", "--gsd 1", "--cell 2"}) {
     EXPECT_EQ(fix(std::string("--alt 1000 ") + besides).code, 2) << besides;
   }
   EXPECT_EQ(fix("").code, 2) << "a lens without a height";

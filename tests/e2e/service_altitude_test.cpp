@@ -98,6 +98,12 @@ TEST_F(ServiceAltitude, OfAPhotoFollowsFromThatOfItsTakeOff) {
   EXPECT_NEAR(by_takeoff["modes"][0]["agl_m"].get<double>(), 100.0, 1e-6);
   EXPECT_EQ(by_takeoff["modes"][0]["pose"], by_height["modes"][0]["pose"]);
   EXPECT_EQ(fix_photo("high", "")["camera"]["agl_m"], 300.0) << "the ground is taken to be as high as the take-off";
+  const json by_altitude = fix_photo("high", "&alt_m=800");
+  EXPECT_NEAR(by_altitude["camera"]["agl_m"].get<double>(), 100.0, 1e-6);
+  EXPECT_NEAR(by_altitude["modes"][0]["agl_m"].get<double>(), 100.0, 1e-6);
+  EXPECT_EQ(by_altitude["modes"][0]["pose"], by_height["modes"][0]["pose"]);
+  EXPECT_EQ(fix_photo("high", "&alt_m=5000&takeoff_alt_m=500")["camera"]["agl_m"], by_takeoff["camera"]["agl_m"]);
+  EXPECT_EQ(fix_photo("town", "&alt_m=800")["camera"]["agl_m"], 300.0) << "the map knows no heights, but the photo one";
   EXPECT_EQ(fix_photo("town", "&takeoff_alt_m=500")["code"], "terrain-missing");
   EXPECT_EQ(fix_photo("high", "&takeoff_alt_m=399")["code"], "below-ground");
   EXPECT_EQ(fix_photo("high", "&takeoff_alt_m=500&agl_m=100")["field"], "takeoff_alt_m");

@@ -4,6 +4,7 @@
 
 #include <variant>
 
+#include "core/units/error.hpp"
 #include "server/api/feature_request.hpp"
 #include "server/api/frame_scale.hpp"
 #include "tests/server/api/request_fixture.hpp"
@@ -52,7 +53,7 @@ TEST(AltitudeRequest, IsThatAboveTheSeaOtherwiseAndTheOneAboveGroundFollows) {
 }
 
 TEST(AltitudeRequest, IsNoneWhereTheSizeIsToldOtherwise) {
-  for (const json& told : {json{{"gsd_m", 0.5}, {"alt_m", 1000}}, json{{"exif", true}, {"alt_m", 1000}},
+  for (const json& told : {json{{"gsd_m", 0.5}, {"alt_m", 1000}}, json{{"exif", true}},
                            json{{"kind", "feature_map"}, {"alt_m", 1000}}, json{{"fov_deg", 60}}}) {
     Content content = frame(told);
     EXPECT_FALSE(take_altitude(content, ground_at_700_m)) << told;
@@ -77,6 +78,26 @@ TEST(AltitudeRequest, OfAPhotoIsThatOfItsTakeOffAndWhatItsFileTellsAboveThat) {
   const Content lower = photo("drone-dji:RelativeAltitude=\"-15.00\" ", json::object());
   EXPECT_EQ(std::get<FrameCamera>(parse_frame_scale(content.fields, lower.image).view).agl_m, 85.0)
       << "of another photo of that flight";
+}
+
+TEST(AltitudeRequest, OfAPhotoIsThatAboveTheSeaWhereTheMapKnowsItsGround) {
+  Content content = photo(kHigher, {{"alt_m", 1000}});
+  const auto altitude = take_altitude(content, ground_at_700_m);
+  ASSERT_TRUE(altitude);
+  EXPECT_EQ(altitude->above_sea_m, 1000.0);
+  EXPECT_EQ(std::get<FrameCamera>(parse_frame_scale(content.fields, content.image).view).agl_m, 300.0);
+  Content told = photo(kHigher, {{"alt_m", 1000}, {"agl_m", 120}});
+  EXPECT_EQ(take_altitude(told, ground_at_700_m).value().agl_m, 120.0) << "what is told of the ground counts";
+}
+
+TEST(AltitudeRequest, OfAPhotoIsLeftToItsFileWhereTheMapKnowsNoHeights) {
+  Content content = photo(kHigher, {{"alt_m", 1000}});
+  const auto refused_for = [](const char* code) {
+    return [code](double) -> double { throw InvalidInput(code, "as the map does"); };
+  };
+  EXPECT_FALSE(take_altitude(content, refused_for("terrain-missing")));
+  EXPECT_EQ(std::get<FrameCamera>(parse_frame_scale(content.fields, content.image).view).agl_m, 40.0);
+  EXPECT_EQ(testing::code_of([&] { take_altitude(content, refused_for("below-ground")); }), "below-ground");
 }
 
 TEST(AltitudeRequest, OfATakeOffGoesWithPhotosThatTellHowMuchHigherTheyAre) {

@@ -97,6 +97,8 @@ std::string boresight_text(const BoresightReport& report) {
                       found.corrected_rms_m);
   text += fmt::format("the map lies {:.1f} m east and {:.1f} m north of the told places\n", found.east_m.value,
                       found.north_m.value);
+  text += fmt::format("roll and pitch are then known to {:.2f} degrees: --attitude-sigma, attitude_sigma_deg\n",
+                      found.attitude_sigma.degrees());
   return text + reversed_text(found) + doubts_text(found) + mount_text(report);
 }
 
@@ -114,6 +116,7 @@ nlohmann::json boresight_json(const BoresightReport& report) {
       {"map_north_m", json_of(found.north_m)},
       {"roll_reversed", found.is_roll_reversed},
       {"pitch_reversed", found.is_pitch_reversed},
+      {"attitude_sigma_deg", found.attitude_sigma.degrees()},
       {"told_rms_m", found.told_rms_m},
       {"corrected_rms_m", found.corrected_rms_m},
       {"mount",

@@ -40,7 +40,13 @@ Estimate angle_of(const Fit& fit, Parameter i) {
   return {fit.at[i] * kDegree, std::hypot(std::sqrt(fit.covariance(i, i)), kDistorted * fit.at[i]) * kDegree};
 }
 
-double rms(double squares, std::size_t n) { return std::sqrt(squares / static_cast<double>(n)); }
+/// By which a camera has to turn for the place to move so far.
+Angle angle_by(const FrameCamera& camera, double moved_m) {
+  const double steep = level_from_camera(camera)(2, 2);
+  return Angle::radians(moved_m * steep * steep / camera.agl_m);
+}
+
+double square(double value) { return value * value; }
 
 }  // namespace
 
@@ -63,14 +69,18 @@ Boresight boresight_of(std::span<const BoresightSighting> sightings, const Bores
   found.used = fit.used;
   double told = 0.0;
   double left = 0.0;
+  double turned = 0.0;
   for (std::size_t i = 0; i < sightings.size(); ++i) {
     if (!fit.used[i]) continue;
-    const double told_m = distance_m(sightings[i].told.position, sightings[i].found.position);
-    told += told_m * told_m;
-    left += fit.left_m[i] * fit.left_m[i];
+    const double angle = angle_by(sightings[i].camera, fit.left_m[i]).radians();
+    told += square(distance_m(sightings[i].told.position, sightings[i].found.position));
+    left += square(fit.left_m[i]);
+    turned += square(angle);
   }
-  found.told_rms_m = rms(told, found.used_count());
-  found.corrected_rms_m = rms(left, found.used_count());
+  const auto used = static_cast<double>(found.used_count());
+  found.told_rms_m = std::sqrt(told / used);
+  found.corrected_rms_m = std::sqrt(left / used);
+  found.attitude_sigma = Angle::radians(std::sqrt(turned / (2.0 * used)));
   return found;
 }
 

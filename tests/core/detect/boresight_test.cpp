@@ -161,6 +161,7 @@ TEST(BoresightOfAFlight, IsTheMountOfTheCameraWithItsError) {
     EXPECT_LT(found.yaw_deg.sigma, 0.25);
     EXPECT_NEAR(found.corrected_rms_m, 3.0 * std::sqrt(2.0), 1.5);
     EXPECT_GT(found.told_rms_m, 10.0);
+    EXPECT_NEAR(found.attitude_sigma.degrees(), 3.0 / 300.0 * 180.0 / M_PI, 0.2) << "of errors of 3 m";
     EXPECT_NEAR(found.east_m.value, 2.0, 2.0);
     EXPECT_FALSE(found.is_roll_reversed);
     EXPECT_FALSE(found.is_pitch_reversed);

@@ -10,7 +10,7 @@ from table import fits_a_cell
 
 FLATTEST_DEG = math.degrees(FLATTEST)
 #: What a table tells of a camera: of how many numbers, None of any
-CAMERA = {"fov_deg": 1, "focal_px": 1, "principal_px": 2, "distortion": None, "lens": None}
+CAMERA = {"fov_deg": 1, "focal_px": 1, "principal_px": 2, "distortion": None, "lens": None, "attitude_sigma_deg": 1}
 LENSES = ("perspective", "fisheye")
 
 
@@ -128,17 +128,18 @@ def _add_pictures(parser):
 def _add_recording(parser):
     parser.add_argument("--csv", type=parse_table, metavar="FILE",
                         help="record here the flight of a vehicle that has GPS (GLOBAL_POSITION_INT, GPS_RAW_INT), a "
-                             "new table of its pictures for roadfix bench and roadfix fly --over")
+                             "new table of its pictures for roadfix boresight, bench and fly --over")
     parser.add_argument("--frame", nargs="+", type=parse_camera, default=[], metavar="NAME=VALUE",
                         help="of --csv: what the table tells of the camera, fov_deg, or focal_px and principal_px, "
-                             "distortion, lens")
+                             "distortion, lens; and attitude_sigma_deg")
 
 
 def _check_recording(parser, options):
     options.frame = dict(options.frame)
     if options.csv is None and options.frame:
         parser.error("--frame is what --csv tells of the camera, and there is no --csv")
-    has_lens = "fov_deg" not in options.frame if "focal_px" in options.frame else set(options.frame) == {"fov_deg"}
+    lens = set(options.frame) - {"attitude_sigma_deg"}
+    has_lens = "fov_deg" not in lens if "focal_px" in lens else lens == {"fov_deg"}
     if options.csv is not None and not has_lens:
         parser.error("--csv needs --frame fov_deg=DEGREES, or --frame focal_px=PIXELS and what else a calibration "
                      "tells (principal_px, distortion, lens)")

@@ -273,7 +273,7 @@ class Program(unittest.TestCase):
     def test_records_a_flight_with_gps_in_a_new_table(self):
         table = Path(self.folder.name, "flight.csv")
         self.start("--camera", "level", "--csv", str(table), "--frame", "focal_px=1000", "principal_px=811,588.5",
-                   "distortion=[-0.28, 0.08, 0, 0]", "lens=perspective")
+                   "distortion=[-0.28, 0.08, 0, 0]", "lens=perspective", "attitude_sigma_deg=0.5")
         step = self.step_of(Path(self.folder.name, "1.jpg"))
         began = time.monotonic()
         while len(table.read_text().splitlines()) < 2 and time.monotonic() < began + 20.0:
@@ -286,7 +286,8 @@ class Program(unittest.TestCase):
         self.assertEqual(row, {
             "file": "1.jpg", "sequence": "flight", "lat": "37.75810000", "lon": "38.26550000",
             "heading_deg": str(step["yaw_deg"]), "roll_deg": "0.0", "pitch_deg": "0.0", "agl_m": "120.0",
-            "focal_px": "1000", "principal_px": "811 588.5", "distortion": "-0.28 0.08 0 0", "lens": "perspective"})
+            "focal_px": "1000", "principal_px": "811 588.5", "distortion": "-0.28 0.08 0 0", "lens": "perspective",
+            "attitude_sigma_deg": "0.5"})
 
     def test_records_no_flight_over_another(self):
         table = Path(self.folder.name, "flight.csv")

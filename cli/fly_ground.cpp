@@ -113,7 +113,8 @@ std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options
   if (options.course == "survey") {
     points = fly::survey_lanes(box, options.lane_m);
   } else {
-    for (const LatLon place : route_with_notes(options.course)) points.push_back(zone.project(place));
+    const routes::Route route = route_with_notes(options.course);
+    for (const routes::RoutePlace& place : route.places) points.push_back(zone.project(place.position));
   }
   return [=] { return fly::make_waypoint_pilot(points, handling); };
 }

@@ -81,11 +81,11 @@ void survey_map(const LocalizabilityArguments& arguments, const MapView& map, Su
 }
 
 RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
-  const std::vector<LatLon> route = route_with_notes(arguments.route);
+  const routes::Route route = route_with_notes(arguments.route);
   Progress progress("searching", "places");
   return survey_route(map, route,
                       {.query = options.query,
-                       .every_m = arguments.every_m.value_or(0.5 * options.query.footprint_m),
+                       .every_m = arguments.every_m,
                        .max_places = options.max_places,
                        .threads = options.threads,
                        .progress = progress.updates()});

@@ -2,13 +2,12 @@
 #pragma once
 
 #include <filesystem>
-#include <vector>
 
-#include "core/geodesy/latlon.hpp"
+#include "core/routes/route.hpp"
 
 namespace roadfix::cli {
 
-/// Its places, two at least. Says on stderr what of a plan is left out. Throws as routes::read_route().
-std::vector<LatLon> route_with_notes(const std::filesystem::path& file);
+/// Says on stderr what of a plan is left out. Throws as routes::read_route().
+routes::Route route_with_notes(const std::filesystem::path& file);
 
 }  // namespace roadfix::cli

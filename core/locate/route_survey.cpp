@@ -16,6 +16,12 @@ namespace {
 /// The way from point to point, measured from its begin.
 class Way {
  public:
+  struct Spot {
+    GridPoint point;
+    std::size_t from = 0;  ///< number of the point that it lies behind
+    double share = 0.0;    ///< of the way from there to the next that lies behind it
+  };
+
   explicit Way(std::vector<GridPoint> points) : points_(std::move(points)) {
     for (std::size_t i = 1; i < points_.size(); ++i) {
       passed_m_.push_back(passed_m_.back() + distance_m(points_[i - 1], points_[i]));
@@ -25,22 +31,23 @@ class Way {
   double length_m() const { return passed_m_.back(); }
 
   /// 0 <= at_m <= length_m().
-  GridPoint at(double at_m) const {
+  Spot at(double at_m) const {
     const auto next = std::clamp<std::size_t>(first_beyond(at_m), 1, points_.size() - 1);
     const GridPoint from = points_[next - 1];
     const GridPoint to = points_[next];
     const double leg_m = passed_m_[next] - passed_m_[next - 1];
     const double share = leg_m > 0.0 ? std::min((at_m - passed_m_[next - 1]) / leg_m, 1.0) : 0.0;
-    return {std::lerp(from.east_m, to.east_m, share), std::lerp(from.north_m, to.north_m, share)};
+    const GridPoint point{std::lerp(from.east_m, to.east_m, share), std::lerp(from.north_m, to.north_m, share)};
+    return {point, next - 1, share};
   }
 
   /// Its ends, and the points between them.
   std::vector<GridPoint> stretch(double from_m, double to_m) const {
-    std::vector<GridPoint> line{at(from_m)};
+    std::vector<GridPoint> line{at(from_m).point};
     for (std::size_t i = first_beyond(from_m); i < points_.size() && passed_m_[i] < to_m; ++i) {
       line.push_back(points_[i]);
     }
-    line.push_back(at(to_m));
+    line.push_back(at(to_m).point);
     return line;
   }
 
@@ -60,9 +67,10 @@ class Way {
                                  map.id.name));
 }
 
-Way way_on(const MapView& map, std::span<const LatLon> route) {
+Way way_on(const MapView& map, const routes::Route& route) {
   std::vector<GridPoint> points;
-  for (const LatLon place : route) {
+  for (const routes::RoutePlace& planned : route.places) {
+    const LatLon place = planned.position;
     const auto point = map.zone.project_if_defined(place);
     if (!point) {
       throw InvalidInput(
@@ -88,14 +96,14 @@ class Pieces {
 
   std::int64_t count() const { return count_; }
   double piece_m() const { return way_.length_m() / static_cast<double>(count_); }
-  GridPoint middle(std::int64_t piece) const { return way_.at(piece_m() * (static_cast<double>(piece) + 0.5)); }
+  Way::Spot middle(std::int64_t piece) const { return way_.at(piece_m() * (static_cast<double>(piece) + 0.5)); }
   std::vector<GridPoint> line(std::int64_t piece) const {
     const double from_m = piece_m() * static_cast<double>(piece);
     return way_.stretch(from_m, std::min(from_m + piece_m(), way_.length_m()));
   }
   bool any_within(const GridBox& box) const {
     for (std::int64_t i = 0; i < count_; ++i) {
-      if (box.contains(middle(i))) return true;
+      if (box.contains(middle(i).point)) return true;
     }
     return false;
   }
@@ -112,12 +120,61 @@ std::int64_t first_piece(const Pieces& pieces, double from_m) {
                                                            pieces.piece_m() * static_cast<double>(pieces.count())));
 }
 
-/// nullopt where the deadline came first.
-std::optional<RoutePiece> piece_at(const MapView& map, const std::vector<GridPoint>& line, GridPoint middle,
-                                   LocalizabilityQuery query) {
+/// What a camera sees along the way.
+class FlownCamera {
+ public:
+  FlownCamera(const MapView& map, const routes::Route& route, const RouteSurveyOptions& options)
+      : camera_(*options.camera), heights_(map, route, options.usual_agl_m) {}
+
+  std::optional<double> agl_m(const Way::Spot& spot) const { return heights_.agl_m(spot.from, spot.share, spot.point); }
+  double footprint_m(double agl_m) const { return camera_.footprint_m(agl_m); }
+
+  /// Along the way, of footprints that can be asked of; nullopt where there are none.
+  std::optional<double> mean_footprint_m(const Way& way) const {
+    constexpr int kSamples = 1000;
+    double sum_m = 0.0;
+    int count = 0;
+    for (int i = 0; i < kSamples; ++i) {
+      const auto height_m = agl_m(way.at(way.length_m() * (i + 0.5) / kSamples));
+      const double side_m = height_m ? footprint_m(*height_m) : 0.0;
+      if (side_m < kSmallestFootprintM || side_m > kLargestFootprintM) continue;
+      sum_m += side_m;
+      ++count;
+    }
+    return count > 0 ? std::optional(sum_m / count) : std::nullopt;
+  }
+
+ private:
+  DownwardCamera camera_;
+  FlightHeights heights_;
+};
+
+double usual_piece_m(const Way& way, const std::optional<FlownCamera>& camera, const RouteSurveyOptions& options) {
+  if (options.every_m) return *options.every_m;
+  const auto mean_m = camera ? camera->mean_footprint_m(way) : std::nullopt;
+  return 0.5 * mean_m.value_or(options.query.footprint_m);
+}
+
+/// Before anything is searched.
+RoutePiece planned_piece(const MapView& map, const std::vector<GridPoint>& line, const Way::Spot& middle,
+                         const std::optional<FlownCamera>& camera) {
   RoutePiece piece;
   for (const GridPoint point : line) piece.line.push_back(map.zone.unproject(point));
+  if (camera) piece.agl_m = camera->agl_m(middle);
+  if (piece.agl_m) piece.footprint_m = camera->footprint_m(*piece.agl_m);
+  return piece;
+}
+
+/// nullopt where the deadline came first.
+std::optional<RoutePiece> asked_piece(const MapView& map, RoutePiece piece, GridPoint middle, bool by_height,
+                                      LocalizabilityQuery query) {
   if (!map.extent.contains(middle)) return piece;
+  if (by_height) {
+    if (!piece.footprint_m || *piece.footprint_m > kLargestFootprintM) return piece;
+    piece.kind = PlaceKind::kBare;
+    if (*piece.footprint_m < kSmallestFootprintM) return piece;
+    query.footprint_m = *piece.footprint_m;
+  }
   if (query.fix.search.deadline.over()) return std::nullopt;
   query.position = map.zone.unproject(middle);
   const Localizability found = localizability(map, query);
@@ -150,9 +207,23 @@ IndexRange RouteSurvey::longest_without_fix() const {
   return longest;
 }
 
-RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options) {
+std::optional<MetreRange> RouteSurvey::range(std::optional<double> RoutePiece::*of) const {
+  std::optional<MetreRange> range;
+  for (const RoutePiece& piece : pieces) {
+    const std::optional<double>& metres = piece.*of;
+    if (!metres) continue;
+    if (!range) range = MetreRange{*metres, *metres};
+    range->least_m = std::min(range->least_m, *metres);
+    range->most_m = std::max(range->most_m, *metres);
+  }
+  return range;
+}
+
+RouteSurvey survey_route(const MapView& map, const routes::Route& route, const RouteSurveyOptions& options) {
   const Way way = way_on(map, route);
-  const Pieces pieces(way, options.every_m, options.max_places);
+  std::optional<FlownCamera> camera;
+  if (options.camera) camera.emplace(map, route, options);
+  const Pieces pieces(way, usual_piece_m(way, camera, options), options.max_places);
   if (!pieces.any_within(map.extent)) refuse_outside(map);
   RouteSurvey survey{way.length_m(), pieces.piece_m(), first_piece(pieces, options.from_m), {}};
   const std::int64_t count = std::min(pieces.count() - survey.first, options.limit);
@@ -161,7 +232,9 @@ RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, cons
   std::mutex mutex;
   parallel_for(static_cast<int>(count), options.threads, [&](int i) {
     const std::int64_t piece = survey.first + i;
-    auto answer = piece_at(map, pieces.line(piece), pieces.middle(piece), options.query);
+    const Way::Spot middle = pieces.middle(piece);
+    auto answer = asked_piece(map, planned_piece(map, pieces.line(piece), middle, camera), middle.point,
+                              camera.has_value(), options.query);
     const std::lock_guard lock(mutex);
     found[static_cast<std::size_t>(i)] = std::move(answer);
     ++done;

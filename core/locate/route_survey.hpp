@@ -3,19 +3,24 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
+#include "core/locate/flight_heights.hpp"
 #include "core/locate/localizability.hpp"
+#include "core/routes/route.hpp"
 #include "core/units/index_range.hpp"
 #include "core/units/progress.hpp"
 
 namespace roadfix {
 
 struct RouteSurveyOptions {
-  /// Of each place; its position is not read.
+  /// Of each place; its position is not read, nor its footprint where there is a camera.
   LocalizabilityQuery query;
-  double every_m = 200.0;          ///< about the length of the pieces of the route; above 0
+  /// Whose footprint follows how high the route is; nullopt = it does not.
+  std::optional<DownwardCamera> camera{};
+  std::optional<double> usual_agl_m{};  ///< as of FlightHeights
+  /// About the length of the pieces of the route, above 0; nullopt = half a footprint, or half their mean.
+  std::optional<double> every_m{};
   std::int64_t max_places = 1000;  ///< longer pieces where it would be more; each takes about a second of one core
   double from_m = 0.0;             ///< begins with the piece that begins there, as RouteSurvey::begin_m() tells it
   std::int64_t limit = 1'000'000;  ///< pieces in this answer, at most; above 0
@@ -26,8 +31,16 @@ struct RouteSurveyOptions {
 /// A stretch of the route, all of it straight between the places on the way; what holds in its middle counts for it.
 struct RoutePiece {
   std::vector<LatLon> line;  ///< two places at least
+  /// With a footprint of less than kSmallestFootprintM it is kBare, of more than kLargestFootprintM or none kUnknown.
   PlaceKind kind = PlaceKind::kUnknown;
-  double probability = 0.0;  ///< that a frame would be placed rightly
+  double probability = 0.0;             ///< that a frame would be placed rightly
+  std::optional<double> agl_m{};        ///< of a survey with a camera, where it is known
+  std::optional<double> footprint_m{};  ///< the same
+};
+
+struct MetreRange {
+  double least_m = 0.0;
+  double most_m = 0.0;
 };
 
 struct RouteSurvey {
@@ -45,11 +58,14 @@ struct RouteSurvey {
   std::optional<double> first_fix_m() const;
   /// The most pieces in a row none of which is distinct; the first of equal ones. Empty where all are.
   IndexRange longest_without_fix() const;
+  /// Of RoutePiece::agl_m or ::footprint_m, where they are known; nullopt where they are of no piece.
+  std::optional<MetreRange> range(std::optional<double> RoutePiece::*of) const;
 };
 
-/// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, and
-/// InvalidInput "route-outside-map" where no piece lies within the box of the map or a place lies where its zone is not
-/// defined, "route-without-length", "parameter-out-of-range" where `from_m` lies beyond its end.
-RouteSurvey survey_route(const MapView& map, std::span<const LatLon> route, const RouteSurveyOptions& options);
+/// Asks localizability() in the middle of each piece of the way from place to place. Throws what that throws, what
+/// FlightHeights() does where there is a camera, and InvalidInput "route-outside-map" where no piece lies within the
+/// box of the map or a place lies where its zone is not defined, "route-without-length", "parameter-out-of-range" where
+/// `from_m` lies beyond its end.
+RouteSurvey survey_route(const MapView& map, const routes::Route& route, const RouteSurveyOptions& options);
 
 }  // namespace roadfix

@@ -1,14 +1,19 @@
 #include "core/routes/geojson_line.hpp"
 
+#include <fmt/format.h>
+
 #include "core/routes/route_json.hpp"
 
 namespace roadfix::routes {
 namespace {
 
-LatLon position(const JsonField& field) {
+void add_place(const JsonField& field, Route& route) {
   const std::vector<JsonField> numbers = field.elements();
   if (numbers.size() < 2) field.refuse("has to be a longitude and a latitude");
-  return {latitude_of(numbers[1]), longitude_of(numbers[0])};
+  RoutePlace place{{latitude_of(numbers[1]), longitude_of(numbers[0])}, std::nullopt, {}};
+  if (const auto above_sea_m = third_number(numbers)) place.height = PlannedHeight{*above_sea_m, HeightAbove::kSea};
+  place.name = fmt::format("place {}", route.places.size() + 1);
+  route.places.push_back(std::move(place));
 }
 
 std::vector<JsonField> geometries_of(const JsonField& document) {
@@ -24,12 +29,10 @@ std::vector<JsonField> geometries_of(const JsonField& document) {
 }
 
 void add_line(const JsonField& positions, Route& route) {
-  for (const JsonField& place : positions.elements()) route.places.push_back(position(place));
+  for (const JsonField& place : positions.elements()) add_place(place, route);
 }
 
-}  // namespace
-
-Route parse_geojson_line(const JsonField& document) {
+Route line_in(const JsonField& document) {
   Route points;
   for (const JsonField& geometry : geometries_of(document)) {
     const std::string type = geometry.at("type").text();
@@ -42,9 +45,17 @@ Route parse_geojson_line(const JsonField& document) {
       for (const JsonField& part : geometry.at("coordinates").elements()) add_line(part, line);
       return line;
     }
-    if (type == "Point") points.places.push_back(position(geometry.at("coordinates")));
+    if (type == "Point") add_place(geometry.at("coordinates"), points);
   }
   return points;
+}
+
+}  // namespace
+
+Route parse_geojson_line(const JsonField& document) {
+  Route route = line_in(document);
+  if (!route.places.empty()) route.home.position = route.places.front().position;
+  return route;
 }
 
 }  // namespace roadfix::routes

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "core/routes/mission_way.hpp"
 #include "core/routes/route_json.hpp"
@@ -13,25 +15,44 @@ namespace {
 
 constexpr double kMostCommands = 65'535.0;
 
-LatLon place_in(const std::vector<JsonField>& numbers, std::size_t first) {
+LatLon position_in(const std::vector<JsonField>& numbers, std::size_t first) {
   return {latitude_of(numbers[first]), longitude_of(numbers[first + 1])};
 }
 
-/// Latitude, longitude and an altitude.
-LatLon coordinate(const JsonField& field) {
+/// Latitude, longitude and a height, which counts as `above`; nullopt, or no number = it is not told.
+RoutePlace coordinate(const JsonField& field, std::optional<HeightAbove> above, std::string name) {
   const std::vector<JsonField> numbers = field.elements();
   if (numbers.size() < 2) field.refuse("has to be a latitude and a longitude");
-  return place_in(numbers, 0);
+  RoutePlace place{position_in(numbers, 0), std::nullopt, std::move(name)};
+  const auto metres = third_number(numbers);
+  if (above && metres) place.height = PlannedHeight{*metres, *above};
+  return place;
 }
 
-/// Of a simple item; nullopt where its command is for the place where the vehicle is.
-std::optional<LatLon> place_of(const JsonField& item) {
+std::optional<PlannedHeight> height_of(const JsonField& item, const std::vector<JsonField>& params) {
+  constexpr std::size_t kHeight = 6;
+  if (!item.has("frame") || !item.at("frame").is_number()) return std::nullopt;
+  if (params.size() <= kHeight || !params[kHeight].is_number()) return std::nullopt;
+  return height_in_frame(item.at("frame").whole_number(0.0, kMostCommands),
+                         params[kHeight].number(-kHighestM, kHighestM));
+}
+
+/// Of a simple item; at 0, 0 where its command is for the place where the vehicle is.
+RoutePlace place_of(const JsonField& item, std::string name) {
   constexpr std::size_t kLatitude = 4;
   const JsonField params = item.at("params");
   const std::vector<JsonField> numbers = params.elements();
   if (numbers.size() < kLatitude + 2) params.refuse("has to hold seven numbers");
-  if (numbers[kLatitude].is_null() || numbers[kLatitude + 1].is_null()) return std::nullopt;
-  return place_in(numbers, kLatitude);
+  RoutePlace place{{}, height_of(item, numbers), std::move(name)};
+  const bool told = !numbers[kLatitude].is_null() && !numbers[kLatitude + 1].is_null();
+  if (told) place.position = position_in(numbers, kLatitude);
+  return place;
+}
+
+/// What the heights of a landing pattern count from.
+std::optional<HeightAbove> heights_of_landing(const JsonField& item) {
+  if (!item.has("altitudesAreRelative")) return std::nullopt;
+  return item.at("altitudesAreRelative").truth() ? HeightAbove::kHome : HeightAbove::kSea;
 }
 
 /// The commands of which surveys and corridors are made.
@@ -45,37 +66,42 @@ class PlanReader {
  public:
   explicit PlanReader(const JsonField& mission) : mission_(mission) {
     if (mission.has("plannedHomePosition")) {
-      way_ = MissionWay::from_home(coordinate(mission.at("plannedHomePosition")));
+      way_ = MissionWay::from_home(coordinate(mission.at("plannedHomePosition"), HeightAbove::kSea, "the home"));
     }
   }
 
   Route read() && {
     int number = 0;
     for (const JsonField& item : mission_.at("items").elements()) add_item(item, ++number);
-    return {way_.places(), std::move(left_out_)};
+    Route route = std::move(way_).route();
+    route.left_out = std::move(left_out_);
+    return route;
   }
 
  private:
   void add_item(const JsonField& item, int number) {
     if (item.at("type").text() == "SimpleItem") {
-      add_command(item);
+      add_command(item, number);
     } else {
       add_pattern(item, number);
     }
   }
 
-  void add_command(const JsonField& item) {
-    way_.follow(item.at("command").whole_number(0.0, kMostCommands), [&] { return place_of(item); });
+  void add_command(const JsonField& item, int number) {
+    way_.follow(item.at("command").whole_number(0.0, kMostCommands),
+                [&] { return place_of(item, fmt::format("item {}", number)); });
   }
 
   void add_pattern(const JsonField& item, int number) {
     const std::string kind = item.at("complexItemType").text();
     const std::vector<JsonField> transects = transects_of(item);
     if (!transects.empty()) {
-      for (const JsonField& part : transects) add_command(part);
+      for (const JsonField& part : transects) add_command(part, number);
     } else if (item.has("landCoordinate")) {
-      if (item.has("landingApproachCoordinate")) way_.fly_to(coordinate(item.at("landingApproachCoordinate")));
-      way_.fly_to(coordinate(item.at("landCoordinate")));
+      const auto above = heights_of_landing(item);
+      for (const char* place : {"landingApproachCoordinate", "landCoordinate"}) {
+        if (item.has(place)) way_.fly_to(coordinate(item.at(place), above, fmt::format("item {}", number)));
+      }
     } else {
       left_out_.push_back(fmt::format("item {}, a {}: the plan does not say which way it leads", number, kind));
     }

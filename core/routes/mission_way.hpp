@@ -5,18 +5,36 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
-#include "core/geodesy/latlon.hpp"
+#include "core/routes/route.hpp"
 
 namespace roadfix::routes {
+
+/// Of an item in a frame (MAV_FRAME); nullopt where that is none of heights on the globe.
+inline std::optional<PlannedHeight> height_in_frame(std::int64_t frame, double metres) {
+  switch (frame) {
+    case 0:
+    case 5:
+      return PlannedHeight{metres, HeightAbove::kSea};
+    case 3:
+    case 6:
+      return PlannedHeight{metres, HeightAbove::kHome};
+    case 10:
+    case 11:
+      return PlannedHeight{metres, HeightAbove::kGround};
+    default:
+      return std::nullopt;
+  }
+}
 
 class MissionWay {
  public:
   /// Of a mission that tells its home besides, from there on; a place that is not told is none.
-  static MissionWay from_home(LatLon home) {
+  static MissionWay from_home(RoutePlace home) {
     MissionWay way;
-    if (is_told(home)) way.begin_at(home);
+    if (is_told(home.position)) way.begin_at(std::move(home));
     return way;
   }
   /// Of a mission whose first place is its home.
@@ -27,22 +45,31 @@ class MissionWay {
   }
   MissionWay() = default;  ///< of a mission without a home
 
-  /// `place_of` is called for commands that lead to a place: an optional, without a value for where the vehicle is.
+  /// `place_of` is called for commands that lead to a place: a RoutePlace, at 0, 0 for where the vehicle is.
   template <typename PlaceOf>
   void follow(std::int64_t command, const PlaceOf& place_of) {
-    if (command == kReturnToLaunch && home_) places_.push_back(*home_);
+    if (command == kReturnToLaunch && home_) return_home();
     if (!leads_somewhere(command)) return;
-    const std::optional<LatLon> place = place_of();
-    if (!place || !is_told(*place)) return;
-    if (first_is_home_ && !home_) {
-      begin_at(*place);
+    RoutePlace place = place_of();
+    if (!is_told(place.position)) {
+      if (takes_off(command)) climb(place.height);
+    } else if (first_is_home_ && !home_) {
+      begin_at(std::move(place));
     } else {
-      fly_to(*place);
+      fly_to(std::move(place));
     }
   }
-  void fly_to(LatLon place) { places_.push_back(place); }
+  void fly_to(RoutePlace place) { places_.push_back(std::move(place)); }
 
-  const std::vector<LatLon>& places() const { return places_; }
+  Route route() && {
+    Route route{std::move(places_), {}, {}};
+    if (home_) {
+      route.home = *home_;
+    } else if (!route.places.empty()) {
+      route.home = {route.places.front().position, std::nullopt};
+    }
+    return route;
+  }
 
  private:
   static constexpr std::int64_t kReturnToLaunch = 20;
@@ -52,17 +79,31 @@ class MissionWay {
     constexpr std::array<std::int64_t, 12> kFlownTo{16, 17, 18, 19, 21, 22, 31, 36, 82, 84, 85, 94};
     return std::ranges::find(kFlownTo, command) != kFlownTo.end();
   }
+  static bool takes_off(std::int64_t command) { return command == 22 || command == 84; }
   /// Autopilots take both as 0 for a place that is not told.
   static bool is_told(LatLon place) { return place.lat_deg != 0.0 || place.lon_deg != 0.0; }
 
-  void begin_at(LatLon home) {
-    home_ = home;
-    fly_to(home);
+  /// On its ground, however high above the sea that lies.
+  void begin_at(RoutePlace home) {
+    home_ = RouteHome{home.position, std::nullopt};
+    if (home.height && home.height->above == HeightAbove::kSea) home_->above_sea_m = home.height->metres;
+    if (!home.height || home_->above_sea_m) home.height = PlannedHeight{0.0, HeightAbove::kHome};
+    fly_to(std::move(home));
+  }
+  /// As high as it is: how high it returns is set in the autopilot.
+  void return_home() {
+    RoutePlace back = places_.back();
+    back.position = home_->position;
+    fly_to(std::move(back));
+  }
+  /// Straight up, which adds nothing to the way.
+  void climb(const std::optional<PlannedHeight>& height) {
+    if (height && !places_.empty()) places_.back().height = height;
   }
 
   bool first_is_home_ = false;
-  std::optional<LatLon> home_;
-  std::vector<LatLon> places_;
+  std::optional<RouteHome> home_;
+  std::vector<RoutePlace> places_;
 };
 
 }  // namespace roadfix::routes

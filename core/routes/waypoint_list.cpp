@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "core/routes/mission_way.hpp"
 #include "core/routes/route_json.hpp"
@@ -16,8 +18,10 @@ namespace {
 
 constexpr std::string_view kBegin = "QGC WPL";
 constexpr std::size_t kNumbers = 12;
+constexpr std::size_t kFrame = 2;
 constexpr std::size_t kCommand = 3;
 constexpr std::size_t kLatitude = 8;
+constexpr std::size_t kHeight = 10;
 
 /// The numbers of a line, between tabs or blanks, however many.
 std::vector<double> numbers_of(std::string_view line, std::size_t line_number) {
@@ -35,13 +39,26 @@ std::vector<double> numbers_of(std::string_view line, std::size_t line_number) {
   return numbers;
 }
 
-LatLon place_of(const std::vector<double>& numbers, std::size_t line_number) {
+LatLon position_in(const std::vector<double>& numbers, std::size_t line_number) {
   const LatLon place{numbers[kLatitude], numbers[kLatitude + 1]};
   if (std::abs(place.lat_deg) <= 90.0 && std::abs(place.lon_deg) <= 180.0) return place;
   throw InvalidInput(kRouteUnreadable,
                      fmt::format("line {}: latitude {} and longitude {} are no place: the ninth and tenth number are "
                                  "degrees, up to 90 and 180",
                                  line_number, place.lat_deg, place.lon_deg));
+}
+
+/// A whole number of a column, or one that stands for none.
+std::int64_t code_in(double number) { return std::llround(std::clamp(number, -1.0, 65'535.0)); }
+
+RoutePlace place_in(const std::vector<double>& numbers, std::size_t line_number) {
+  if (std::abs(numbers[kHeight]) > kHighestM) {
+    throw InvalidInput(kRouteUnreadable,
+                       fmt::format("line {}: {} m are no height: the eleventh number is one, up to {:.0f} m",
+                                   line_number, numbers[kHeight], kHighestM));
+  }
+  return {position_in(numbers, line_number), height_in_frame(code_in(numbers[kFrame]), numbers[kHeight]),
+          fmt::format("line {}", line_number)};
 }
 
 void add_line(std::string_view line, std::size_t line_number, MissionWay& way) {
@@ -51,8 +68,7 @@ void add_line(std::string_view line, std::size_t line_number, MissionWay& way) {
     throw InvalidInput(kRouteUnreadable,
                        fmt::format("line {} has {} numbers: a waypoint has twelve", line_number, numbers.size()));
   }
-  const auto command = std::llround(std::clamp(numbers[kCommand], 0.0, 65'535.0));
-  way.follow(command, [&] { return std::optional(place_of(numbers, line_number)); });
+  way.follow(code_in(numbers[kCommand]), [&] { return place_in(numbers, line_number); });
 }
 
 }  // namespace
@@ -66,7 +82,7 @@ Route parse_waypoint_list(std::string_view text) {
     if (line.ends_with('\r')) line.remove_suffix(1);
     if (++line_number > 1) add_line(line, line_number, way);
   }
-  return {way.places(), {}};
+  return std::move(way).route();
 }
 
 }  // namespace roadfix::routes

@@ -33,6 +33,7 @@ class JsonField {
 
   bool has(const std::string& key) const { return value_.contains(key); }
   bool is_null() const { return value_.is_null(); }
+  bool is_number() const { return value_.is_number(); }
   bool is_array() const { return value_.is_array(); }
   bool is_object() const { return value_.is_object(); }
 

@@ -87,7 +87,7 @@ http::Response post_route(const Service& service, const http::Request& request) 
   RouteSurveyOptions options;
   options.query.footprint_m = fields.number("footprint_m", kFootprint);
   options.query.radius_m = fields.optional_number("radius_m", kRadius).value_or(options.query.radius_m);
-  options.every_m = fields.optional_number("every_m", api::kPositive).value_or(0.5 * options.query.footprint_m);
+  options.every_m = fields.optional_number("every_m", api::kPositive);
   options.max_places = fields.optional_integer("places", 1, kMostPlaces).value_or(kMostPlaces);
   options.limit = fields.optional_integer("limit", 1, kMostPlaces).value_or(kMostPlaces);
   options.from_m = fields.optional_number("from_m", kRouteLength).value_or(0.0);
@@ -96,7 +96,7 @@ http::Response post_route(const Service& service, const http::Request& request) 
   options.query.fix = fix_options(service, request, hang_up.token());
   const SearchThreads::Share share(service.search_threads);
   options.query.fix.search.threads = share.threads();
-  const RouteSurvey found = survey_route(map->view, route.places, options);
+  const RouteSurvey found = survey_route(map->view, route, options);
   nlohmann::json answer = api::geojson_of(found);
   answer.update(api::summary_json(found));
   answer["complete"] = found.complete();

@@ -58,10 +58,10 @@ TEST(MapSurvey, AsksAtFewerPlacesThatStandForMoreGroundWhereItWouldBeTooMany) {
 
 /// A town and, 8 km from it, fields; each of 800 x 800 m.
 MapView town_and_far_fields() {
-  constexpr int kSide = 400;
-  RoadGrid ground = RoadGrid::unobserved({2.0, {300'000, -3'200'000}, 4000 + kSide, 4000 + kSide});
-  paste(testing::street_map(22, {2.0, {}, kSide, kSide}).cells, ground.cells, 0, 4000);
-  paste(CellArray(kSide, kSide, kNoRoad), ground.cells, 4000, 0);
+  constexpr int kCells = 400;
+  RoadGrid ground = RoadGrid::unobserved({2.0, {300'000, -3'200'000}, 4000 + kCells, 4000 + kCells});
+  paste(testing::street_map(22, {2.0, {}, kCells, kCells}).cells, ground.cells, 0, 4000);
+  paste(CellArray(kCells, kCells, kNoRoad), ground.cells, 4000, 0);
   return view_of(ground);
 }
 

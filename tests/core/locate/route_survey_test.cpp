@@ -18,10 +18,11 @@ using testing::town_fields_and_unknown_ground;
 /// The map's box is 1200 x 800 m, of which the western 800 m are observed.
 constexpr GridPoint kSouthWest{600'000.0, 6'399'200.0};
 
-std::vector<LatLon> route_of(const MapView& map, const std::vector<GridPoint>& from_south_west) {
-  std::vector<LatLon> route;
+routes::Route route_of(const MapView& map, const std::vector<GridPoint>& from_south_west) {
+  routes::Route route;
   for (const GridPoint point : from_south_west) {
-    route.push_back(map.zone.unproject({kSouthWest.east_m + point.east_m, kSouthWest.north_m + point.north_m}));
+    const LatLon at = map.zone.unproject({kSouthWest.east_m + point.east_m, kSouthWest.north_m + point.north_m});
+    route.places.push_back({at, std::nullopt, {}});
   }
   return route;
 }
@@ -66,7 +67,7 @@ TEST(RouteSurvey, PiecesAreOfOneLengthAndFollowTheTurnsOfTheRoute) {
   const MapView map = town_fields_and_unknown_ground();
   RouteSurveyOptions halves = options();
   halves.every_m = 500.0;
-  const std::vector<LatLon> route = route_of(map, {{100, 100}, {100, 400}, {800, 400}});
+  const routes::Route route = route_of(map, {{100, 100}, {100, 400}, {800, 400}});
   const RouteSurvey found = survey_route(map, route, halves);
   ASSERT_EQ(found.pieces.size(), 2U);
   EXPECT_NEAR(found.piece_m, 500.0, 0.01);
@@ -96,7 +97,7 @@ TEST(RouteSurvey, AsksAtFewerPlacesThatStandForLongerPiecesWhereItWouldBeTooMany
 
 TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
   const MapView map = town_fields_and_unknown_ground();
-  const std::vector<LatLon> route = route_of(map, {{0, 400}, {1600, 400}});
+  const routes::Route route = route_of(map, {{0, 400}, {1600, 400}});
   RouteSurveyOptions rest = options();
   rest.from_m = 400.0;
   const RouteSurvey found = survey_route(map, route, rest);
@@ -144,13 +145,84 @@ TEST(RouteSurvey, HasNoFirstFixWhereNoneIsToBeExpected) {
   EXPECT_EQ(found.longest_without_fix().count(), 1);
 }
 
+/// Northwards through the town, from one height above ground to another.
+routes::Route climb(const MapView& map, double from_agl_m, double to_agl_m, double length_m = 400.0) {
+  routes::Route route = route_of(map, {{200, 200}, {200, 200 + length_m}});
+  route.places[0].height = routes::PlannedHeight{from_agl_m, routes::HeightAbove::kGround};
+  route.places[1].height = routes::PlannedHeight{to_agl_m, routes::HeightAbove::kGround};
+  return route;
+}
+
+/// Of a camera whose footprint is twice as wide as it is high.
+RouteSurveyOptions options_of_a_camera() {
+  RouteSurveyOptions camera = options();
+  camera.query.footprint_m = 0.0;  // not read
+  camera.camera = DownwardCamera{Angle::degrees(90.0), 1.0};
+  return camera;
+}
+
+TEST(RouteSurvey, AsksOfEachPlaceForTheGroundThatACameraShowsFromItsHeight) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions camera = options_of_a_camera();
+  camera.every_m = 100.0;
+  const RouteSurvey found = survey_route(map, climb(map, 20.0, 220.0), camera);
+  ASSERT_EQ(found.pieces.size(), 4U);
+  for (const int i : {0, 1, 2, 3}) {
+    const RoutePiece& piece = found.pieces[static_cast<std::size_t>(i)];
+    EXPECT_NEAR(piece.agl_m.value(), 45.0 + 50.0 * i, 1e-6);
+    EXPECT_NEAR(piece.footprint_m.value(), 90.0 + 100.0 * i, 1e-6);
+    LocalizabilityQuery same = options().query;
+    same.footprint_m = *piece.footprint_m;
+    same.position = map.zone.unproject({kSouthWest.east_m + 200.0, kSouthWest.north_m + 250.0 + 100.0 * i});
+    EXPECT_EQ(piece.kind, kind_of(localizability(map, same)));
+    EXPECT_NEAR(piece.probability, localizability(map, same).probability, 1e-6);
+  }
+  EXPECT_EQ(found.pieces[3].kind, kDistinct);
+  EXPECT_NE(found.pieces[0].kind, kDistinct) << "from so low it shows too little";
+  EXPECT_NEAR(found.range(&RoutePiece::agl_m)->least_m, 45.0, 1e-6);
+  EXPECT_NEAR(found.range(&RoutePiece::footprint_m)->most_m, 390.0, 1e-6);
+  EXPECT_FALSE(survey_route(map, climb(map, 20.0, 220.0), options()).range(&RoutePiece::agl_m));
+}
+
+TEST(RouteSurvey, TakesFootprintsThatAreTooSmallForBareAndThoseTooLargeForUnknown) {
+  const MapView map = town_fields_and_unknown_ground();
+  const auto only_piece = [&](double agl_m) {
+    return survey_route(map, climb(map, agl_m, agl_m), options_of_a_camera()).pieces.at(0);
+  };
+  EXPECT_EQ(only_piece(9.9).kind, kBare) << "19.8 m";
+  EXPECT_EQ(only_piece(-3.0).kind, kBare) << "the plan leads into the ground";
+  EXPECT_EQ(only_piece(-3.0).footprint_m, 0.0);
+  EXPECT_EQ(only_piece(2501.0).kind, kUnknown);
+  EXPECT_EQ(only_piece(200.0).kind, kDistinct);
+}
+
+TEST(RouteSurvey, OfACameraCutsPiecesOfHalfItsMeanFootprint) {
+  const MapView map = town_fields_and_unknown_ground();
+  RouteSurveyOptions camera = options_of_a_camera();
+  camera.every_m.reset();
+  EXPECT_NEAR(survey_route(map, climb(map, 100.0, 300.0), camera).piece_m, 200.0, 1e-6);
+  // Of 0 to 100 m those from 10 m on show the 20 m and more that can be asked of: 110 m in the mean.
+  EXPECT_NEAR(survey_route(map, climb(map, 0.0, 100.0, 5500.0), camera).piece_m, 55.0, 0.1);
+  RouteSurveyOptions fixed = options();
+  fixed.every_m.reset();
+  EXPECT_NEAR(survey_route(map, climb(map, 0.0, 0.0), fixed).piece_m, 200.0, 1e-6) << "or of half a footprint";
+}
+
+TEST(RouteSurvey, OfACameraNeedsHeightsThatCanBecomeOnesAboveGround) {
+  const MapView map = town_fields_and_unknown_ground();
+  const routes::Route untold = route_of(map, {{0, 400}, {400, 400}});
+  RouteSurveyOptions camera = options_of_a_camera();
+  EXPECT_EQ(code_of([&] { survey_route(map, untold, camera); }), "heights-missing");
+  camera.usual_agl_m = 200.0;
+  EXPECT_NEAR(survey_route(map, untold, camera).pieces.at(0).footprint_m.value(), 400.0, 1e-6);
+}
+
 TEST(RouteSurvey, RefusesRoutesOfAnotherPlaceAndThoseThatLeadNowhere) {
   const MapView map = town_fields_and_unknown_ground();
-  const auto code = [&](const std::vector<LatLon>& route) {
-    return code_of([&] { survey_route(map, route, options()); });
-  };
+  const auto code = [&](const routes::Route& route) { return code_of([&] { survey_route(map, route, options()); }); };
   EXPECT_EQ(code(route_of(map, {{0, 5000}, {1200, 5000}})), "route-outside-map");
-  EXPECT_EQ(code({{10.0, -120.0}, {10.0, -119.0}}), "route-outside-map") << "where the zone is not defined";
+  const routes::Route elsewhere{{{{10.0, -120.0}, {}, {}}, {{10.0, -119.0}, {}, {}}}, {}, {}};
+  EXPECT_EQ(code(elsewhere), "route-outside-map") << "where the zone is not defined";
   EXPECT_EQ(code(route_of(map, {{400, 400}, {400, 400}})), "route-without-length");
 }
 

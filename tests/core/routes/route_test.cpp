@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <fstream>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -22,12 +24,27 @@ using testing::message_of;
 using ::testing::SizeIs;
 
 auto place(double lat_deg, double lon_deg) {
-  return AllOf(Field(&LatLon::lat_deg, DoubleEq(lat_deg)), Field(&LatLon::lon_deg, DoubleEq(lon_deg)));
+  return Field(&RoutePlace::position,
+               AllOf(Field(&LatLon::lat_deg, DoubleEq(lat_deg)), Field(&LatLon::lon_deg, DoubleEq(lon_deg))));
 }
 
-std::string simple_item(int command, const std::string& lat, const std::string& lon) {
-  return R"({"type":"SimpleItem","autoContinue":true,"frame":3,"doJumpId":1,"command":)" + std::to_string(command) +
-         R"(,"params":[0,0,0,null,)" + lat + "," + lon + R"(,50]})";
+using Height = std::optional<PlannedHeight>;
+
+std::vector<Height> heights_of(const Route& route) {
+  std::vector<Height> heights;
+  for (const RoutePlace& place : route.places) heights.push_back(place.height);
+  return heights;
+}
+
+Height above_sea(double metres) { return PlannedHeight{metres, HeightAbove::kSea}; }
+Height above_home(double metres) { return PlannedHeight{metres, HeightAbove::kHome}; }
+Height above_ground(double metres) { return PlannedHeight{metres, HeightAbove::kGround}; }
+
+std::string simple_item(int command, const std::string& lat, const std::string& lon, int frame = 3,
+                        const std::string& height = "50") {
+  return R"({"type":"SimpleItem","autoContinue":true,"frame":)" + std::to_string(frame) +
+         R"(,"doJumpId":1,"command":)" + std::to_string(command) + R"(,"params":[0,0,0,null,)" + lat + "," + lon + "," +
+         height + "]}";
 }
 
 std::string plan(const std::string& items, const std::string& home = "[47.39,8.54,488]") {
@@ -77,6 +94,49 @@ TEST(Routes, OfAPlanNameWhatTheyLeaveOut) {
   EXPECT_THAT(route.left_out, ElementsAre(HasSubstr("item 2, a StructureScan"), HasSubstr("item 3, a survey")));
 }
 
+TEST(Routes, OfAPlanAreAsHighAsEachItemCountsItAndReturnAsHighAsTheyAre) {
+  const std::string survey = R"({"type":"ComplexItem","complexItemType":"survey","TransectStyleComplexItem":)"
+                             R"({"CameraCalc":{"DistanceToSurface":80,"DistanceMode":3},"Items":[)" +
+                             simple_item(16, "47.2", "8.2", 0, "612.5") + "]}}";
+  const std::string items = simple_item(22, "47.391", "8.541", 3, "50") + "," +  // take-off
+                            simple_item(16, "47.1", "8.1", 6, "120") + "," +     //
+                            survey + "," +                                       //
+                            simple_item(16, "47.3", "8.3", 5, "700") + "," +     //
+                            simple_item(16, "47.4", "8.4", 10, "90") + "," +     //
+                            simple_item(16, "47.5", "8.5", 11, "95") + "," +     //
+                            simple_item(20, "0", "0", 2, "0");
+  const Route route = parse_route(plan(items));
+  EXPECT_THAT(heights_of(route), ElementsAre(above_home(0), above_home(50), above_home(120), above_sea(612.5),
+                                             above_sea(700), above_ground(90), above_ground(95), above_ground(95)));
+  EXPECT_DOUBLE_EQ(route.home.position.lat_deg, 47.39);
+  EXPECT_EQ(route.home.above_sea_m, 488.0);
+  EXPECT_EQ(route.places[0].name, "the home");
+  EXPECT_EQ(route.places[3].name, "item 3") << "of a part of a survey, that of the survey";
+}
+
+TEST(Routes, OfAPlanThatTakesOffWhereItIsBeginAsHighAsItClimbs) {
+  const Route route = parse_route(plan(simple_item(22, "0", "0", 3, "60") + "," + simple_item(16, "47.1", "8.1")));
+  EXPECT_THAT(heights_of(route), ElementsAre(above_home(60), above_home(50)));
+}
+
+TEST(Routes, OfAPlanHaveHeightsOnlyWhereItTellsThem) {
+  const auto landing = [](const std::string& told) {
+    return R"({"type":"ComplexItem","complexItemType":"fwLandingPattern",)" + told +
+           R"("landingApproachCoordinate":[47.3,8.3,40],"landCoordinate":[47.4,8.4,0]})";
+  };
+  const std::string items = simple_item(16, "47.1", "8.1", 3, "null") + "," +  // the ground is not known to QGC yet
+                            simple_item(16, "47.2", "8.2", 2, "50") + "," +    // a frame of no heights
+                            R"({"type":"SimpleItem","command":16,"params":[0,0,0,0,47.3,8.3]},)" + landing("") + "," +
+                            landing(R"("altitudesAreRelative":true,)") + "," +
+                            landing(R"("altitudesAreRelative":false,)");
+  const Height none;
+  const Route route = parse_route(plan(items, "[0,0,0]"));
+  EXPECT_THAT(heights_of(route),
+              ElementsAre(none, none, none, none, none, above_home(40), above_home(0), above_sea(40), above_sea(0)));
+  EXPECT_DOUBLE_EQ(route.home.position.lat_deg, 47.1) << "no home is told: its first place";
+  EXPECT_FALSE(route.home.above_sea_m);
+}
+
 // The first lines are those of mavlink.io/en/file_formats.
 TEST(Routes, OfAWaypointListBeginAtItsFirstItemAndEndThereAgainWhereTheyReturn) {
   const Route route = parse_route(
@@ -87,6 +147,22 @@ TEST(Routes, OfAWaypointListBeginAtItsFirstItemAndEndThereAgainWhereTheyReturn) 
       "3\t0\t3\t20\t0\t0\t0\t0\t0\t0\t0\t1\r\n"
       "\r\n");
   EXPECT_THAT(route.places, ElementsAre(place(8.548, 47.376), place(8.549, 47.376), place(8.548, 47.376)));
+  EXPECT_THAT(heights_of(route), ElementsAre(above_home(0), above_sea(550), above_sea(550)));
+  EXPECT_EQ(route.home.above_sea_m, 550.0);
+  EXPECT_EQ(route.places[1].name, "line 3");
+}
+
+TEST(Routes, OfAWaypointListCountHeightsAsItsThirdColumnSays) {
+  const Route route = parse_route(
+      "QGC WPL 110\n"
+      "0 1 0 16 0 0 0 0 47.1 8.1 550 1\n"
+      "1 0 3 22 0 0 0 0 0 0 30 1\n"
+      "2 0 3 16 0 0 0 0 47.2 8.2 100 1\n"
+      "3 0 10 16 0 0 0 0 47.3 8.3 110 1\n"
+      "4 0 2 16 0 0 0 0 47.4 8.4 120 1\n");
+  EXPECT_THAT(heights_of(route), ElementsAre(above_home(30), above_home(100), above_ground(110), Height{}));
+  const Route not_at_home = parse_route("QGC WPL 110\n0 1 3 16 0 0 0 0 47 8 80 1\n1 0 3 16 0 0 0 0 47 9 80 1\n");
+  EXPECT_EQ(not_at_home.places[0].height, above_home(80)) << "its first line is in the air";
 }
 
 TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
@@ -98,6 +174,9 @@ TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
   };
   const auto drawn = ElementsAre(place(57.5, 21), place(57.6, 21.01));
   EXPECT_THAT(parse_route(line).places, drawn);
+  EXPECT_THAT(heights_of(parse_route(line)), ElementsAre(Height{}, above_sea(300)));
+  EXPECT_EQ(parse_route(line).places[1].name, "place 2");
+  EXPECT_DOUBLE_EQ(parse_route(line).home.position.lat_deg, 57.5);
   EXPECT_THAT(parse_route(feature(line)).places, drawn);
   EXPECT_THAT(parse_route(collection(point + "," + feature("null") + "," + feature(line))).places, drawn);
   EXPECT_THAT(parse_route(collection(point + "," + point)).places, ElementsAre(place(2, 1), place(2, 1)));
@@ -125,6 +204,8 @@ TEST(Routes, ThatCannotBeReadAreRefusedWithTheirPlaceInTheFile) {
   EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 50\n"), HasSubstr("line 2 has 11 numbers"));
   EXPECT_THAT(complaint("QGC WPL 110\n\n0 1 0 16 0 0 0 0 x 8 50 1\n"), HasSubstr("line 3: 'x' is no number"));
   EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 97 8 50 1\n"), HasSubstr("line 2: latitude 97"));
+  EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 1e9 1\n"), HasSubstr("line 2: 1000000000 m are no height"));
+  EXPECT_THAT(complaint(plan(simple_item(16, "47", "8", 3, "-1e9"))), HasSubstr("mission.items[0].params[6]"));
 }
 
 TEST(Routes, OfFilesAreRefusedByTheirName) {

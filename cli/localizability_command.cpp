@@ -16,6 +16,7 @@
 #include "cli/route_report.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
+#include "cli/unit_options.hpp"
 #include "core/locate/map_survey.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/json_parts.hpp"
@@ -29,6 +30,10 @@ struct LocalizabilityArguments {
   std::string calibration;
   SurveyOptions survey;
   std::string route;
+  std::optional<double> footprint_m;
+  std::optional<Angle> fov;                 ///< in place of it, along a route
+  double aspect = DownwardCamera{}.aspect;  ///< with that
+  std::optional<double> usual_agl_m;
   std::optional<double> every_m;  ///< default: half a footprint
   std::string geojson_file;
   bool as_json = false;
@@ -38,13 +43,12 @@ double share(const MapSurvey& survey, std::int64_t places) {
   return survey.places() > 0 ? static_cast<double>(places) / static_cast<double>(survey.places()) : 0.0;
 }
 
-nlohmann::json asked_json(const MapView& map, const LocalizabilityQuery& query) {
-  return {{"map", api::to_json(map.id)}, {"made_by", api::made_by()}, {"footprint_m", query.footprint_m}};
-}
+nlohmann::json asked_json(const MapView& map) { return {{"map", api::to_json(map.id)}, {"made_by", api::made_by()}}; }
 
 void print_json(const MapView& map, const SurveyOptions& options, const MapSurvey& found) {
-  nlohmann::json answer = asked_json(map, options.query);
-  answer.update({{"places", found.places()},
+  nlohmann::json answer = asked_json(map);
+  answer.update({{"footprint_m", options.query.footprint_m},
+                 {"places", found.places()},
                  {"ground_km2", found.ground_m2 / 1e6},
                  {"distinct", share(found, found.distinct)},
                  {"sparse", share(found, found.sparse)},
@@ -82,9 +86,13 @@ void survey_map(const LocalizabilityArguments& arguments, const MapView& map, Su
 
 RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
   const routes::Route route = route_with_notes(arguments.route);
+  std::optional<DownwardCamera> camera;
+  if (arguments.fov) camera = DownwardCamera{*arguments.fov, arguments.aspect};
   Progress progress("searching", "places");
   return survey_route(map, route,
                       {.query = options.query,
+                       .camera = camera,
+                       .usual_agl_m = arguments.usual_agl_m,
                        .every_m = arguments.every_m,
                        .max_places = options.max_places,
                        .threads = options.threads,
@@ -97,19 +105,25 @@ void survey_along_route(const LocalizabilityArguments& arguments, const MapView&
   const RouteSurvey found = surveyed_route(arguments, map, options);
   std::FILE* out = printed_beside({arguments.geojson_file});
   if (arguments.as_json) {
-    nlohmann::json answer = asked_json(map, options.query);
+    nlohmann::json answer = asked_json(map);
+    if (arguments.footprint_m) answer["footprint_m"] = *arguments.footprint_m;
+    if (arguments.fov) answer.update({{"fov_deg", arguments.fov->degrees()}, {"aspect", arguments.aspect}});
     answer.update(api::summary_json(found));
     fmt::print(out, "{}\n", json_text(answer, 2));
   } else {
-    fmt::print(out, "{}", route_text(found, arguments.route, options.query.footprint_m));
+    fmt::print(out, "{}", route_text(found, arguments.route, arguments.footprint_m));
   }
   if (!arguments.geojson_file.empty()) write_file(arguments.geojson_file, json_text(api::geojson_of(found)));
 }
 
 void run_localizability(const LocalizabilityArguments& arguments) {
+  if (!arguments.footprint_m && !arguments.fov) {
+    throw CLI::RequiredError("--footprint-m or, with --route, --fov");
+  }
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // places search the ground of their neighbours
   const MapView view = view_with_notes(arguments.map, kSearchCacheBytes);
   SurveyOptions options = arguments.survey;
+  options.query.footprint_m = arguments.footprint_m.value_or(options.query.footprint_m);
   if (!arguments.calibration.empty()) options.query.fix.calibration = read_calibration(arguments.calibration);
   options.query.fix.search.deadline = Deadline(stop_on_signals());
   arguments.route.empty() ? survey_map(arguments, view, options) : survey_along_route(arguments, view, options);
@@ -124,14 +138,14 @@ void add_localizability_command(CLI::App& app) {
       "From the map alone: an upper bound of what frames give after a disaster. The service shows where that ground "
       "is, on its page.\n"
       "Examples: roadfix localizability town.gpkg --footprint-m 400\n"
-      "          roadfix localizability town.gpkg --footprint-m 400 --route mission.plan --geojson route.geojson");
+      "          roadfix localizability town.gpkg --footprint-m 400 --route mission.plan --geojson route.geojson\n"
+      "          roadfix localizability town.gpkg --fov 73 --route mission.plan");
   const auto a = std::make_shared<LocalizabilityArguments>();
   command->add_option("map", a->map, "Map file (GeoPackage)")->required();
-  command
-      ->add_option("--footprint,--footprint-m", a->survey.query.footprint_m,
-                   "Side of the square of ground that a frame shows, in metres")
-      ->required()
-      ->check(between(kSmallestFootprintM, kLargestFootprintM));
+  CLI::Option* footprint = command
+                               ->add_option("--footprint,--footprint-m", a->footprint_m,
+                                            "Side of the square of ground that a frame shows, in metres")
+                               ->check(between(kSmallestFootprintM, kLargestFootprintM));
   command
       ->add_option("--places", a->survey.max_places,
                    "Ask at so many places at most, evenly spread: each takes about a second of one core")
@@ -141,7 +155,27 @@ void add_localizability_command(CLI::App& app) {
       "--route", a->route,
       "Ask along this route only: a plan of QGroundControl, a list of waypoints (QGC WPL), or GeoJSON with a line or "
       "points");
-  command->add_option("--every-m", a->every_m, "Metres of the route for each place; default: half a footprint")
+  CLI::Option* fov =
+      add_degrees_option(*command, "--fov", a->fov,
+                         "Of a camera that looks straight down: field of view across, degrees. In place of "
+                         "--footprint-m: frames show as much ground as from the heights that the route tells. Those "
+                         "above the sea take a map that knows the heights of its ground (roadfix terrain)")
+          ->needs(route)
+          ->excludes(footprint)
+          ->check(positive(179.0));
+  command
+      ->add_option("--aspect", a->aspect,
+                   "Width of its frames over their height; the footprint is the square that is as large. Default: 4/3")
+      ->needs(fov)
+      ->check(between(0.1, 10.0));
+  command
+      ->add_option("--agl", a->usual_agl_m,
+                   "Height above ground in metres at places of which the route tells no height")
+      ->needs(fov)
+      ->check(positive());
+  command
+      ->add_option("--every-m", a->every_m,
+                   "Metres of the route for each place; default: half a footprint, with --fov of the mean one")
       ->needs(route)
       ->check(positive());
   command->add_option("--geojson", a->geojson_file, "Write the route, piece by piece, with what was found")

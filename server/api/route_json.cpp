@@ -23,6 +23,11 @@ json summary_json(const RouteSurvey& survey) {
   const auto first = survey.first_fix_m();
   const IndexRange gap = survey.longest_without_fix();
   summary["first_fix_m"] = first ? json(*first) : json();
+  const auto add_range = [&](const char* name, std::optional<double> RoutePiece::*of) {
+    if (const auto range = survey.range(of)) summary[name] = {range->least_m, range->most_m};
+  };
+  add_range("agl_range_m", &RoutePiece::agl_m);
+  add_range("footprint_range_m", &RoutePiece::footprint_m);
   summary["longest_without_fix"] = {{"from_m", survey.begin_m(gap.first)}, {"to_m", survey.begin_m(gap.end)}};
   return summary;
 }
@@ -32,13 +37,14 @@ json geojson_of(const RouteSurvey& survey) {
   for (std::size_t i = 0; i < survey.pieces.size(); ++i) {
     const RoutePiece& piece = survey.pieces[i];
     const auto number = static_cast<std::int64_t>(i);
-    features.push_back({{"type", "Feature"},
-                        {"geometry", line_json(piece.line)},
-                        {"properties",
-                         {{"from_m", survey.begin_m(number)},
-                          {"to_m", survey.begin_m(number + 1)},
-                          {"place", word_of(kPlaceKinds, piece.kind)},
-                          {"probability", piece.probability}}}});
+    json properties{{"from_m", survey.begin_m(number)},
+                    {"to_m", survey.begin_m(number + 1)},
+                    {"place", word_of(kPlaceKinds, piece.kind)},
+                    {"probability", piece.probability}};
+    if (piece.agl_m) properties["agl_m"] = *piece.agl_m;
+    if (piece.footprint_m) properties["footprint_m"] = *piece.footprint_m;
+    features.push_back(
+        {{"type", "Feature"}, {"geometry", line_json(piece.line)}, {"properties", std::move(properties)}});
   }
   return {{"type", "FeatureCollection"}, {"features", std::move(features)}};
 }

@@ -65,6 +65,30 @@ constexpr std::size_t kLongestRoute = std::size_t{1} << 20;  // bytes
 constexpr int kMostPlaces = 1000;
 constexpr api::Range kRouteLength{0.0, 2e7};  // metres: half around the Earth
 
+constexpr api::Range kFov{0.0, 179.0, true};
+constexpr api::Range kAspect{0.1, 10.0};
+constexpr api::Range kHeight{0.0, 20'000.0, true};
+
+/// The footprint, or a camera from whose height it follows.
+void read_footprint(const api::Fields& fields, RouteSurveyOptions& options) {
+  const auto fov = fields.optional_angle("fov_deg", kFov);
+  if (!fov) {
+    for (const char* name : {"aspect", "agl_m"}) {
+      if (fields.has(name)) {
+        throw http::InvalidField("missing-parameter", "fov_deg", fmt::format("'{}' takes fov_deg", name));
+      }
+    }
+    options.query.footprint_m = fields.number("footprint_m", kFootprint);
+    return;
+  }
+  if (fields.has("footprint_m")) {
+    throw http::InvalidField("bad-parameter", "footprint_m", "'footprint_m' cannot be combined with fov_deg");
+  }
+  options.camera = DownwardCamera{*fov};
+  options.camera->aspect = fields.optional_number("aspect", kAspect).value_or(options.camera->aspect);
+  options.usual_agl_m = fields.optional_number("agl_m", kHeight);
+}
+
 routes::Route route_in(const http::Request& request) {
   constexpr std::array<std::string_view, 4> kTypes{"application/json", "application/geo+json", "text/plain",
                                                    "application/octet-stream"};
@@ -85,7 +109,7 @@ http::Response post_route(const Service& service, const http::Request& request) 
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Fields fields(request.query);
   RouteSurveyOptions options;
-  options.query.footprint_m = fields.number("footprint_m", kFootprint);
+  read_footprint(fields, options);
   options.query.radius_m = fields.optional_number("radius_m", kRadius).value_or(options.query.radius_m);
   options.every_m = fields.optional_number("every_m", api::kPositive);
   options.max_places = fields.optional_integer("places", 1, kMostPlaces).value_or(kMostPlaces);
@@ -198,7 +222,8 @@ void add_localizability_routes(Routes& routes) {
   routes.add("GET", "/v1/maps/{map}/localizability", {"lat", "lon", "footprint_m", "radius_m"}, get_localizability,
              http::Load::kHeavyAnswer);
   routes.add("POST", "/v1/maps/{map}/localizability",
-             {"footprint_m", "radius_m", "every_m", "places", "from_m", "limit"}, post_route, http::Load::kHeavyAnswer);
+             {"footprint_m", "fov_deg", "aspect", "agl_m", "radius_m", "every_m", "places", "from_m", "limit"},
+             post_route, http::Load::kHeavyAnswer);
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto tiles = std::make_shared<Tiles>(routes.service().http.threads / kThreadsPerWaiting);
   routes.add(

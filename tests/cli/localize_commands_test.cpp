@@ -113,6 +113,59 @@ TEST_F(LocalizeCommands, LocalizabilityOfARouteSaysWhereAFlightHasFixesAndHowLon
       << "of which route?";
 }
 
+/// Through the town, 1000 m from west to east, and down from 300 m above its home.
+class LocalizabilityByHeight : public LocalizeCommands {
+ protected:
+  std::filesystem::path mission(int frame, double end_m) const {
+    const auto waypoint = [&](int number, double east_m, double height_m) {
+      const LatLon at = zone.unproject({600'200.0 + east_m, 6'399'450.0});
+      return fmt::format("{} 0 {} 16 0 0 0 0 {:.9f} {:.9f} {} 1\n", number, frame, at.lat_deg, at.lon_deg, height_m);
+    };
+    const std::filesystem::path file = folder / "climb.waypoints";
+    std::ofstream(file) << "QGC WPL 110\n" << waypoint(0, 0.0, 300.0) << waypoint(1, 1000.0, end_m);
+    return file;
+  }
+  /// Frames are as wide as high, and show 4/3 m of ground for each metre above it.
+  ProgramResult ask(const std::filesystem::path& route, const std::string& more = "") const {
+    return roadfix("localizability " + map.string() + " --fov 67.380135 --aspect 1 --route " + route.string() + more);
+  }
+};
+
+TEST_F(LocalizabilityByHeight, LooksAtAsMuchGroundAsACameraShowsFromThere) {
+  const std::filesystem::path pieces = folder / "pieces.geojson";
+  const ProgramResult result = ask(mission(3, 100.0), " --every-m 500 --json --geojson " + pieces.string());
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto answer = nlohmann::json::parse(result.out);
+  EXPECT_NEAR(answer["fov_deg"].get<double>(), 67.380135, 1e-6);
+  EXPECT_EQ(answer["aspect"], 1.0);
+  EXPECT_FALSE(answer.contains("footprint_m"));
+  EXPECT_NEAR(answer["agl_range_m"][0].get<double>(), 150.0, 0.01);
+  EXPECT_NEAR(answer["agl_range_m"][1].get<double>(), 250.0, 0.01);
+  EXPECT_NEAR(answer["footprint_range_m"][1].get<double>(), 333.33, 0.01);
+  const auto features = nlohmann::json::parse(std::ifstream(pieces))["features"];
+  ASSERT_EQ(features.size(), 2U);
+  EXPECT_NEAR(features[0]["properties"]["footprint_m"].get<double>(), 333.33, 0.01);
+  EXPECT_NEAR(features[1]["properties"]["footprint_m"].get<double>(), 200.0, 0.01);
+  EXPECT_NEAR(features[1]["properties"]["agl_m"].get<double>(), 150.0, 0.01);
+
+  const std::string told = ask(mission(3, 100.0), " --every-m 500").out;
+  EXPECT_THAT(told,
+              HasSubstr("1.0 km, 150 to 250 m above ground, of which frames show 200 to 333 m; asked every 500 m"));
+  EXPECT_THAT(told, ::testing::Not(HasSubstr("too low")));
+  EXPECT_THAT(ask(mission(3, -290.0), " --every-m 500").out, HasSubstr("0.5 km below the ground, first at km 0.5 ("));
+  EXPECT_THAT(ask(mission(3, -90.0), " --every-m 500").out,
+              HasSubstr("0.5 km too low to show 20 m of ground, first at km 0.5 ("));
+}
+
+TEST_F(LocalizabilityByHeight, TakesHeightsThatTheRouteAndTheMapTell) {
+  EXPECT_THAT(ask(mission(0, 300.0)).err, ::testing::AllOf(HasSubstr("line 3"), HasSubstr("[terrain-missing]")));
+  EXPECT_THAT(ask(mission(2, 300.0)).err, ::testing::AllOf(HasSubstr("line 3"), HasSubstr("[heights-missing]")));
+  EXPECT_THAT(ask(mission(2, 300.0), " --agl 300 --every-m 1000").out, HasSubstr("150 to 150 m above ground"))
+      << "from the home";
+  EXPECT_EQ(ask(mission(3, 300.0), " --footprint-m 400").code, 2) << "or by height";
+  EXPECT_EQ(roadfix("localizability " + map.string() + " --fov 70").code, 2) << "of which route?";
+}
+
 TEST_F(LocalizeCommands, FixSaysThatAnotherDetectorThanReadsFramesFoundTheRoads) {
   const std::string fix = "fix --detector tree " + map.string() + " " + window.string();
   save(encode_feature_map(what_is_seen(truth, 160), "neural roadnet-8 fnv1a64=1 gsd_m=1 orientations=1"), window);

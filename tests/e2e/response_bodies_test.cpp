@@ -86,6 +86,9 @@ class ResponseBodies : public testing::DescribedService {
     expect_as_described(
         "findRouteLocalizability", 200,
         client_->Post(map + "/localizability?footprint_m=400&places=2", line.dump(), "application/json"));
+    expect_as_described(
+        "findRouteLocalizability", 200,
+        client_->Post(map + "/localizability?fov_deg=70&agl_m=300&places=2", line.dump(), "application/json"));
     expect_as_described("findRouteLocalizability", 422,
                         client_->Post(map + "/localizability?footprint_m=400", "{}", "application/json"));
     expect_as_described("getLocalizabilityTileJson", 200, client_->Get(map + "/localizability/tilejson.json"));

@@ -216,6 +216,40 @@ TEST_F(ServiceFix, SaysBeforeTheFlightWhereAlongARouteFramesWouldGiveAFix) {
   EXPECT_EQ(testing::refusal(client_.Post(url, std::string(2'000'000, ' '), "text/plain")), "413 route-too-long");
 }
 
+TEST_F(ServiceFix, SaysBeforeTheFlightWhatACameraShowsFromTheHeightsOfARoute) {
+  const double lon_deg = town->place.lon_deg;
+  const auto mission = [&](int frame) {
+    json items;
+    for (const double east_deg : {0.0, 0.005}) {
+      items.push_back({{"type", "SimpleItem"},
+                       {"command", 16},
+                       {"frame", frame},
+                       {"params", {0, 0, 0, 0, town->place.lat_deg, lon_deg + east_deg, 150}}});
+    }
+    return json{{"fileType", "Plan"}, {"mission", {{"items", items}}}}.dump();
+  };
+  const std::string url = "/v1/maps/town/localizability?radius_m=300&places=2";
+  const auto ask = [&](const std::string& camera, int frame) {
+    return client_.Post(url + camera, mission(frame), "application/json");
+  };
+  // Across 90 degrees: 300 m.
+  const json found = testing::json_of(ask("&fov_deg=90&aspect=1", 3));
+  ASSERT_EQ(found["features"].size(), 2U) << found;
+  EXPECT_NEAR(found["features"][0]["properties"]["footprint_m"].get<double>(), 300.0, 1e-6);
+  EXPECT_NEAR(found["agl_range_m"][1].get<double>(), 150.0, 1e-6);
+  const json fixed = testing::json_of(ask("&footprint_m=300", 3));
+  EXPECT_EQ(fixed["features"][0]["properties"]["place"], found["features"][0]["properties"]["place"]);
+  EXPECT_FALSE(fixed["features"][0]["properties"].contains("footprint_m"));
+
+  EXPECT_EQ(testing::refusal(ask("&fov_deg=90", 0)), "422 terrain-missing");
+  EXPECT_EQ(testing::refusal(ask("&fov_deg=90", 2)), "422 heights-missing");
+  EXPECT_EQ(testing::json_of(ask("&fov_deg=90&aspect=1&agl_m=150", 2))["footprint_range_m"],
+            found["footprint_range_m"]);
+  EXPECT_EQ(testing::refusal(ask("&fov_deg=90&footprint_m=300", 3)), "400 bad-parameter footprint_m");
+  EXPECT_EQ(testing::refusal(ask("&footprint_m=300&agl_m=150", 3)), "400 missing-parameter fov_deg");
+  EXPECT_EQ(testing::refusal(ask("", 3)), "400 missing-parameter footprint_m");
+}
+
 TEST_F(ServiceFix, ScoresPosesInTheirOrder) {
   json request = testing::json_of(client_.Get(window_query(120.0) + "&format=json"));
   json elsewhere = request["pose"];

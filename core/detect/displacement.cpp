@@ -2,29 +2,34 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "core/detect/frame.hpp"
 #include "core/detect/lens.hpp"
 
 namespace roadfix {
 
 PlacedFrame::PlacedFrame(const FrameCamera& told, cv::Size frame) : agl_m_(told.agl_m) {
+  place(told, frame, farthest_ground_m(told));
+  if (placed_.empty()) place(told, frame, std::numeric_limits<double>::max());  // a corner of it is nearer
+  mean_ = std::accumulate(placed_.begin(), placed_.end(), Ground()) / static_cast<double>(placed_.size());
+  for (Ground& at : placed_) at -= mean_;
+}
+
+void PlacedFrame::place(const FrameCamera& told, cv::Size frame, double farthest_m) {
   constexpr int kSteps = 10;
-  constexpr double kFarHeights = 1.5;  // as far as frames from usual heights are looked at (core/detect/frame)
   const Lens lens = lens_of(told, frame);
   for (int j = 0; j <= kSteps; ++j) {
     for (int i = 0; i <= kSteps; ++i) {
-      const cv::Point2d pixel(frame.width * i / static_cast<double>(kSteps),
-                              frame.height * j / static_cast<double>(kSteps));
-      const auto ray = lens.ray_of(pixel);
+      const auto ray =
+          lens.ray_of({frame.width * i / static_cast<double>(kSteps), frame.height * j / static_cast<double>(kSteps)});
       const auto ground = ray ? ground_of(told, *ray) : std::nullopt;
-      if (!ground || cv::norm(*ground) > kFarHeights * agl_m_) continue;
+      if (!ground || cv::norm(*ground) > farthest_m) continue;
       rays_.emplace_back(ray->x, ray->y, 1.0);
       placed_.emplace_back(ground->x, ground->y);
-      mean_ += placed_.back();
     }
   }
-  mean_ /= static_cast<double>(placed_.size());
-  for (Ground& at : placed_) at -= mean_;
 }
 
 Displacement PlacedFrame::seen_by(const Attitude& actual, double higher) const {

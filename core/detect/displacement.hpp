@@ -19,16 +19,18 @@ struct Displacement {
 /// What a frame shows, placed on the ground as is told of its camera.
 class PlacedFrame {
  public:
-  /// `told` is validated.
+  /// `told` is validated, and the frame shows ground.
   PlacedFrame(const FrameCamera& told, cv::Size frame);
 
   /// If the camera had another attitude (its yaw clockwise from the told heading) and was `higher` times as high: the
-  /// similarity that lays what was placed where it is, by least squares over the pixels of the frame that see ground no
-  /// more than 1.5 heights off, evenly spread.
+  /// similarity that lays what was placed where it is, by least squares over pixels all over the frame that see ground
+  /// which is looked at (farthest_ground_m()).
   Displacement seen_by(const Attitude& actual, double higher) const;
 
  private:
   using Ground = std::complex<double>;  // right of the nadir + i back of it, metres
+
+  void place(const FrameCamera& told, cv::Size frame, double farthest_m);
 
   double agl_m_;
   std::vector<cv::Vec3d> rays_;

@@ -12,11 +12,7 @@
 #include "core/units/error.hpp"
 
 namespace roadfix {
-namespace {
 
-/// How far from the nadir ground is looked at. An attitude that is off by `a` moves what lies d from there by a d^2 / h
-/// more than the ground below: far ground would contradict near ground. Nobody tells the attitude of cameras that are
-/// meant to look down, which see little beyond kSeenByAll: they are looked at no less far than where it is told.
 double farthest_ground_m(const FrameCamera& camera) {
   constexpr double kFarthestM = 3000.0;
   constexpr double kFarthestHeights = 5.0;  // farther away the angle is too flat to see roads
@@ -27,8 +23,6 @@ double farthest_ground_m(const FrameCamera& camera) {
   const double moved_m = std::sqrt(kMostMovedM * agl_m / sigma.radians());
   return std::min(kFarthestM, std::clamp(moved_m, kSeenByAll * agl_m, kFarthestHeights * agl_m));
 }
-
-}  // namespace
 
 void require_roads_visible(double gsd_m) {
   if (gsd_m < kFinestGsdM) {

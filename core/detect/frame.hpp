@@ -19,11 +19,16 @@ inline constexpr double kFinestGsdM = 0.001;
 /// Throws InvalidInput ("frame-too-coarse", "frame-too-fine") beyond these.
 void require_roads_visible(double gsd_m);
 
+/// How far from the nadir point ground is looked at. An attitude that is off by `a` moves what lies d from there by
+/// a d^2 / h more than the ground below: far ground would contradict near ground. So as far as an error of the attitude
+/// (FrameCamera::attitude_sigma, else kToldAttitudeSigma) moves it by 10 m: 1.5 to 5 times the camera's height, and 3
+/// km at most. Nobody tells the attitude of cameras that are meant to look down, which see little beyond 1.5 heights:
+/// they are looked at no less far than where it is told.
+double farthest_ground_m(const FrameCamera& camera);
+
 /// The ground that the frame shows. Frames of a camera are rectified in pixels as fine as the detector can use, as far
-/// from the nadir point as an error of the attitude (FrameCamera::attitude_sigma, else kToldAttitudeSigma) moves ground
-/// by no more than 10 m against that below: 1.5 to 5 times the camera's height, and 3 km at most. A painted border
-/// (painted_border.hpp) and blank areas (blank_ground.hpp) count as not seen. Throws what rectify() and
-/// require_roads_visible() do.
+/// as farthest_ground_m(). A painted border (painted_border.hpp) and blank areas (blank_ground.hpp) count as not seen.
+/// Throws what rectify() and require_roads_visible() do.
 GroundView ground_seen(FramePixels frame, const FrameView& view, const RoadDetector& detector, double max_pixels);
 
 /// The view's roads in cells of `cell_m`. Throws what RoadDetector::detect does.

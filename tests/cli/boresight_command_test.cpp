@@ -26,7 +26,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using testing::ProgramResult;
 
-/// One town for all tests, since it takes longer than they do.
+/// One town for all tests of a process, since it takes longer than they do.
 class BoresightCommand : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -110,15 +110,12 @@ TEST_F(BoresightCommand, GoesOnWithoutFramesThatAreMissingOrBeyondTheMap) {
               AllOf(HasSubstr("absent.jpg"), HasSubstr("[pictures-left-out]"), Not(HasSubstr("beyond.jpg"))));
 }
 
-TEST_F(BoresightCommand, RefusesAFlightOfWhichTooLittleIsFound) {
+TEST_F(BoresightCommand, RefusesAFlightOfWhichTooLittleIsFoundAndFramesOfNoCamera) {
   const std::string rows = testing::text_of(path("frames.csv"));
   const std::string few = table_of("few.csv", "", rows.substr(0, rows.find("frame3.jpg")));
   const ProgramResult result = roadfix("boresight " + path("town.gpkg") + " " + few);
   EXPECT_EQ(result.code, 1);
   EXPECT_THAT(result.err, AllOf(HasSubstr("of 3 frames were found"), HasSubstr("[boresight-too-few]")));
-}
-
-TEST_F(BoresightCommand, RefusesFramesOfNoCamera) {
   const std::string table =
       table_of("rectified.csv", "file,lat,lon,heading_deg,gsd_m\n", "frame0.jpg,37.76,38.27,0,0.6\n");
   EXPECT_THAT(roadfix("boresight " + path("town.gpkg") + " " + table).err, HasSubstr("[boresight-no-camera]"));

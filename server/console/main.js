@@ -161,7 +161,9 @@ function askPlace(latlng) {
 
 function askRoute() {
   const [file] = by('route').files ?? [];
-  if (tiles && file) route.ask(mapUrl(), file, Number(by('footprint').value));
+  const fov = by('fov').value;
+  const frames = fov ? { fov_deg: fov } : { footprint_m: Number(by('footprint').value) };
+  if (tiles && file) route.ask(mapUrl(), file, frames);
 }
 
 function forgetRoute() {
@@ -212,7 +214,7 @@ view.on('keypress', ({ originalEvent }) => {
 });
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', drawLayer);
 by('footprint').addEventListener('input', () => places.forget());
-by('footprint').addEventListener('change', askRoute);
+for (const id of ['footprint', 'fov']) by(id).addEventListener('change', askRoute);
 by('route').addEventListener('input', askRoute);
 acceptDrops(by('drop'), (name) => (isRoute(name) ? by('route') : by('ask').elements.picture));
 by('follow').addEventListener('submit', (event) => {

@@ -26,6 +26,16 @@ export function longestWithout(pieces) {
   return longest;
 }
 
+/// How high the pieces are, and how much frames show from there; none where their heights were not asked for.
+function heightsOf(pieces) {
+  const range = (name) => {
+    const values = pieces.map((piece) => piece[name]).filter((value) => value !== undefined);
+    return values.length ? `${Math.min(...values).toFixed(0)} to ${Math.max(...values).toFixed(0)} m` : null;
+  };
+  const agl = range('agl_m');
+  return agl ? [`${agl} above ground, of which frames show ${range('footprint_m')}`] : [];
+}
+
 /// What is known of the pieces so far.
 export function linesAbout(pieces, length, leftOut) {
   const asked = pieces.length ? pieces.at(-1).to_m : 0;
@@ -33,6 +43,7 @@ export function linesAbout(pieces, length, leftOut) {
   const gap = longestWithout(pieces);
   return [
     asked < 0.999 * length ? `${km(asked)} of ${km(length)} km are looked at` : `${km(length)} km`,
+    ...heightsOf(pieces),
     ...Object.keys(LOOKS).filter((kind) => share(kind) > 0).map((kind) => `${(100 * share(kind)).toFixed(0)} % ${kind}: ${LOOKS[kind].means}`),
     gap ? `longest without a fix: ${km(gap[1] - gap[0])} km, from km ${km(gap[0])} to ${km(gap[1])}` : 'a fix all along',
     ...leftOut.map((part) => `left out: ${part}`),
@@ -47,7 +58,8 @@ export class Route {
     this.figures = L.layerGroup().addTo(view);
   }
 
-  async ask(mapUrl, file, footprint) {
+  /// `frames`: { footprint_m } that they show everywhere, or { fov_deg } of their camera.
+  async ask(mapUrl, file, frames) {
     this.forget();
     const signal = this.#questions.next();
     showStatus(this.output, 'waiting', [], 'looking …');
@@ -55,7 +67,7 @@ export class Route {
       const body = await bytesOf(file, signal);
       const pieces = [];
       for (let answer = { complete: false, next_m: 0 }; !answer.complete;) {
-        const query = new URLSearchParams({ footprint_m: footprint, limit: PIECES_AT_A_TIME, from_m: answer.next_m });
+        const query = new URLSearchParams({ ...frames, limit: PIECES_AT_A_TIME, from_m: answer.next_m });
         answer = await request(`${mapUrl}/localizability?${query}`, { method: 'POST', body, headers: { 'Content-Type': 'application/octet-stream' }, signal });
         if (!answer.features.length) throw { title: 'The service is too busy to go on', detail: 'choose the route again later' };
         if (!pieces.length) this.#show(answer.features[0]);
@@ -84,8 +96,9 @@ export class Route {
     if (!this.view.getBounds().contains([lat, lon])) moveTo(this.view, { lat, lon }, 13);
   }
 
-  #draw({ geometry, properties: { from_m, to_m, place, probability } }) {
-    const text = `km ${km(from_m)} to ${km(to_m)}: ${place}, probability ${probability.toFixed(3)}`;
+  #draw({ geometry, properties: { from_m, to_m, place, probability, agl_m } }) {
+    const height = agl_m === undefined ? '' : `, ${agl_m.toFixed(0)} m above ground`;
+    const text = `km ${km(from_m)} to ${km(to_m)}: ${place}, probability ${probability.toFixed(3)}${height}`;
     for (const part of this.#parts(geometry)) {
       L.polyline(part, { color: LOOKS[place].color, weight: 5, opacity: 0.8 }).bindTooltip(text).addTo(this.figures);
     }

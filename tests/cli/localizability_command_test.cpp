@@ -80,7 +80,7 @@ class LocalizabilityByHeight : public LocalizeCommands {
       const LatLon at = zone.unproject({600'200.0 + east_m, 6'399'450.0});
       return fmt::format("{} 0 {} 16 0 0 0 0 {:.9f} {:.9f} {} 1\n", number, frame, at.lat_deg, at.lon_deg, height_m);
     };
-    const std::filesystem::path file = folder / "climb.waypoints";
+    std::filesystem::path file = folder / "climb.waypoints";
     std::ofstream(file) << "QGC WPL 110\n" << waypoint(0, 0.0, 300.0) << waypoint(1, 1000.0, end_m);
     return file;
   }

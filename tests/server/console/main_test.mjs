@@ -125,6 +125,12 @@ await run({
     await settled();
     await settled();
     assert.match(asked[0], /footprint_m=300/);
+    by('fov').value = '73';
+    by('fov').listeners.change();
+    await settled();
+    await settled();
+    assert.match(asked[1], /fov_deg=73/);
+    assert.doesNotMatch(asked[1], /footprint_m/);
     assert.match(by('along').textContent, /two places at least/);
     by('maps').value = 'town';
     by('maps').listeners.change();

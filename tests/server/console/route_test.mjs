@@ -45,12 +45,27 @@ await run({
   },
   async 'a route is asked for in parts until its end, and drawn by what its pieces are worth'() {
     const asked = serves(['distinct', ...Array(8).fill('sparse'), 'bare', 'unknown']);
-    await route.ask('/map', file, 400);
+    await route.ask('/map', file, { footprint_m: 400 });
     assert.deepEqual(asked, [
       { method: 'POST', bytes: 7, footprint: '400', first: 0, end: 8 }, { method: 'POST', bytes: 7, footprint: '400', first: 8, end: 11 }]);
     assert.deepEqual(colours(), [GREEN, ...Array(8).fill(YELLOW), RED, GREY]);
     assert.match(output.textContent, /mission\.plan\n2\.2 km/);
     assert.ok(output.revealed);
+  },
+  async 'the footprint of a camera is asked for by its field of view, and told with the heights that it follows'() {
+    const heights = [{ agl_m: 120.4, footprint_m: 160 }, {}, { agl_m: 300, footprint_m: 400.4 }];
+    let asked = '';
+    service.answers = {
+      '/map/localizability': (url) => {
+        asked = url;
+        const features = properties(['sparse', 'unknown', 'distinct']).map((each, i) => ({ type: 'Feature', geometry: line(i), properties: { ...each, ...heights[i] } }));
+        return { type: 'FeatureCollection', features, length_m: 600, complete: true, left_out: [] };
+      },
+    };
+    await route.ask('/map', file, { fov_deg: '73.5' });
+    assert.match(asked, /fov_deg=73\.5/);
+    assert.doesNotMatch(asked, /footprint_m/);
+    assert.match(output.textContent, /120 to 300 m above ground, of which frames show 160 to 400 m/);
   },
   async 'a part of it that is found tells how far that is'() {
     serves(Array(10).fill('distinct'));
@@ -60,7 +75,7 @@ await run({
       if (!url.includes('from_m=0')) await new Promise((go) => { release = go; });
       return whole(url, options);
     };
-    const asked = route.ask('/map', file, 400);
+    const asked = route.ask('/map', file, { footprint_m: 400 });
     await new Promise(setImmediate);
     assert.match(output.textContent, /looking …\nmission\.plan\n1\.6 of 2\.0 km are looked at/);
     release();
@@ -71,24 +86,24 @@ await run({
     serves(['distinct']);
     view.middle = 10;
     view.moved = null;
-    await route.ask('/map', file, 400);
+    await route.ask('/map', file, { footprint_m: 400 });
     assert.deepEqual(view.moved, [37, 38]);
     view.middle = 38;
   },
   async 'what the service says of a route that it cannot read is told'() {
     service.answers = { '/map/localizability': { status: 422, title: 'Unprocessable content', detail: 'a route needs at least two places' } };
-    await route.ask('/map', file, 400);
+    await route.ask('/map', file, { footprint_m: 400 });
     assert.match(output.textContent, /a route needs at least two places/);
     assert.deepEqual(colours(), []);
   },
   async 'a service that finds nothing in its time is not asked for ever'() {
     serves(['distinct'], { features: [], complete: false, next_m: 0 });
-    await route.ask('/map', file, 400);
+    await route.ask('/map', file, { footprint_m: 400 });
     assert.match(output.textContent, /too busy/);
   },
   async 'a route that is forgotten leaves the page, and so does what comes of it later'() {
     serves(['distinct']);
-    const asked = route.ask('/map', file, 400);
+    const asked = route.ask('/map', file, { footprint_m: 400 });
     route.forget();
     await asked;
     assert.equal(output.textContent, '');

@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 """A client of ground stations that is started again, or flies on while clocks are set: whether the flight is that of
 before, and how far the vehicle may have come."""
-import json
 import tempfile
 import unittest
 from pathlib import Path

@@ -130,7 +130,8 @@ void add_boresight_command(CLI::App& app) {
           "then that and what was found")
       ->type_name("YAW,PITCH,ROLL")
       ->delimiter(',')
-      ->expected(3);
+      ->expected(3)
+      ->check(between(-360.0, 360.0));
   add_calibration_option(*command, a->calibration);
   add_detector_options(*command, a->detector);
   add_threads_option(*command, "--threads", a->look.fix.search.threads, "Threads of a search");

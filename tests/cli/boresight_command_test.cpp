@@ -119,6 +119,7 @@ TEST_F(BoresightCommand, RefusesAFlightOfWhichTooLittleIsFoundAndFramesOfNoCamer
   const std::string table =
       table_of("rectified.csv", "file,lat,lon,heading_deg,gsd_m\n", "frame0.jpg,37.76,38.27,0,0.6\n");
   EXPECT_THAT(roadfix("boresight " + path("town.gpkg") + " " + table).err, HasSubstr("[boresight-no-camera]"));
+  EXPECT_EQ(roadfix("boresight " + path("town.gpkg") + " " + few + " --mounted nan,0,0").code, 2);
 }
 
 }  // namespace

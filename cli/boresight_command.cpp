@@ -65,7 +65,7 @@ void run_boresight(const BoresightArguments& arguments) {
   constexpr std::size_t kSearchCacheBytes = std::size_t{512} << 20;  // frames search the ground of their neighbours
   const MapView map = view_with_notes(arguments.map, kSearchCacheBytes);
   BoresightReport report{map.id, arguments.csv, flight_of(arguments, map), {}, arguments.mounted};
-  for (const std::string& left_out : report.flight.left_out) fmt::print(stderr, "left out: {}\n", left_out);
+  for (const LeftOutFrame& frame : report.flight.left_out) say_left_out(frame.file, frame.reason);
   const std::vector<BoresightSighting> sightings = sightings_of(report.flight);
   require_enough(sightings, report.flight, arguments.look.radius_m);
   BoresightPrior prior = arguments.prior;

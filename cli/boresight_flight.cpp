@@ -113,7 +113,7 @@ Flight look_for(const std::filesystem::path& csv, const MapView& map, const Road
       if (!is_about_input(error)) throw;
       flight.frames.push_back({frames[i].file, error.code()});
       if (error.code() == kPriorOutsideMap) continue;  // flights begin and end where they like
-      flight.left_out.push_back(fmt::format("{} [{}]", error.what(), error.code()));
+      flight.left_out.push_back({frames[i].file, fmt::format("{} [{}]", error.what(), error.code())});
     }
   }
   flight.registration_sigma_m = mean_registration_sigma_m(flight.frames, map);

@@ -27,10 +27,15 @@ struct FlightFrame {
   std::optional<BoresightSighting> sighting{};  ///< where it was
 };
 
+struct LeftOutFrame {
+  std::filesystem::path file;
+  std::string reason;  ///< for a person
+};
+
 struct Flight {
-  std::vector<FlightFrame> frames;    ///< in the order of the table
-  std::vector<std::string> left_out;  ///< which could not be looked at, and why
-  double registration_sigma_m = 0.0;  ///< of the map where it was found, in the mean
+  std::vector<FlightFrame> frames;     ///< in the order of the table
+  std::vector<LeftOutFrame> left_out;  ///< that could not be looked at
+  double registration_sigma_m = 0.0;   ///< of the map where it was found, in the mean
 };
 
 /// Of a table as evaluation::read_frames_csv() reads it. Throws what that does, Interrupted by options.fix, and

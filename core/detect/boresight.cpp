@@ -16,7 +16,8 @@ using boresight::Signs;
 
 /// The signs as told, unless others explain the places so much better that chance would hardly do (a likelihood ratio
 /// of a thousand; a sighting has two coordinates).
-Fit best_fit(std::span<const BoresightSighting> sightings, const BoresightPrior& prior) {
+Fit best_fit(std::span<const BoresightSighting> seen, const BoresightPrior& prior) {
+  const std::vector<boresight::PlacedSighting> sightings = boresight::placed_sightings(seen);
   constexpr double kLeastM = 0.1;  // less is no error of a match
   const auto unlikelihood = [&](const Fit& fit) {
     return 2.0 * static_cast<double>(sightings.size()) * std::log(std::max(kLeastM, fit.median_left_m()));

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstddef>
 
-#include "core/detect/displacement.hpp"
-
 namespace roadfix::boresight {
 namespace {
 
@@ -14,11 +12,6 @@ namespace {
 constexpr int kMeasurements = 4;
 using Measured = cv::Vec<double, kMeasurements>;
 using Slopes = cv::Matx<double, kMeasurements, kParameters>;
-
-struct PlacedSighting {
-  const BoresightSighting* seen;
-  PlacedFrame placed;
-};
 
 double place_m(const Measured& measured) { return std::hypot(measured[0], measured[1]); }
 
@@ -59,9 +52,8 @@ Covariance information_in(const BoresightPrior& prior) {
 
 class Fitting {
  public:
-  Fitting(std::span<const BoresightSighting> sightings, const BoresightPrior& prior, const Signs& signs)
-      : prior_information_(information_in(prior)) {
-    for (const BoresightSighting& seen : sightings) sightings_.push_back({&seen, PlacedFrame(seen.camera, seen.frame)});
+  Fitting(std::span<const PlacedSighting> sightings, const BoresightPrior& prior, const Signs& signs)
+      : sightings_(sightings), prior_information_(information_in(prior)) {
     fit_.signs = signs;
     fit_.used.assign(sightings.size(), true);
   }
@@ -132,7 +124,7 @@ class Fitting {
     for (std::size_t i = 0; i < fit_.used.size(); ++i) fit_.used[i] = fit_.left_m[i] <= limit_m;
   }
 
-  std::vector<PlacedSighting> sightings_;
+  std::span<const PlacedSighting> sightings_;
   Covariance prior_information_;
   Measured sigma_{5.0, 5.0, 0.01, 0.01};
   std::vector<Measured> residuals_;
@@ -148,7 +140,14 @@ double Fit::median_left_m() const {
   return *middle;
 }
 
-Fit fit_of(std::span<const BoresightSighting> sightings, const BoresightPrior& prior, const Signs& signs) {
+std::vector<PlacedSighting> placed_sightings(std::span<const BoresightSighting> sightings) {
+  std::vector<PlacedSighting> placed;
+  placed.reserve(sightings.size());
+  for (const BoresightSighting& seen : sightings) placed.push_back({&seen, PlacedFrame(seen.camera, seen.frame)});
+  return placed;
+}
+
+Fit fit_of(std::span<const PlacedSighting> sightings, const BoresightPrior& prior, const Signs& signs) {
   return Fitting(sightings, prior, signs).fit();
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/detect/boresight.hpp"
+#include "core/detect/displacement.hpp"
 
 namespace roadfix::boresight {
 
@@ -20,6 +21,14 @@ struct Signs {
   double pitch = 1.0;
 };
 
+struct PlacedSighting {
+  const BoresightSighting* seen;
+  PlacedFrame placed;
+};
+
+/// For any number of fits, as long as the sightings live.
+std::vector<PlacedSighting> placed_sightings(std::span<const BoresightSighting> sightings);
+
 struct Fit {
   Signs signs;
   Parameters at = Parameters::all(0.0);
@@ -31,6 +40,6 @@ struct Fit {
 
 /// Which sightings lie elsewhere, and how much the others scatter, follows from the fit, and the fit from these: a few
 /// rounds of both. Arguments as those of boresight_of().
-Fit fit_of(std::span<const BoresightSighting> sightings, const BoresightPrior& prior, const Signs& signs);
+Fit fit_of(std::span<const PlacedSighting> sightings, const BoresightPrior& prior, const Signs& signs);
 
 }  // namespace roadfix::boresight

@@ -16,13 +16,13 @@ enum class LikelihoodKind {
   kEquation7,
 };
 
-/// Assumed values, not learned from data: they set how soon the filter commits, not which place it prefers.
+/// Chosen by flights (docs/tracks-history.md): they set how soon the filter commits, not which place it prefers.
 struct MeasurementModel {
   LikelihoodKind kind = LikelihoodKind::kCorrelation;
   double expected_correlation = 0.25;  ///< mean correlation at the true pose, 0 to 1
-  /// Square metres of ground that count as one independent sample, since errors of near cells go together. Four times
-  /// the kSampleM2 of a search: a sample that is counted twice makes a track sure too early.
-  double independent_m2 = 4.0 * kSampleM2;
+  /// n samples of kSampleM2 count for n / (1 + n / most_samples), so for no more than this however large a frame is:
+  /// what its detector, its attitude or the map's registration err by goes together over all of it.
+  double most_samples = 150.0;
   double temper = 0.5;         ///< exponent of each likelihood, below 1 since consecutive frames see the same ground
   double useless_share = 0.1;  ///< how many of all frames say nothing even at the true pose, 0 to 1
 

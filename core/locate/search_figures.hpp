@@ -10,8 +10,7 @@
 namespace roadfix {
 
 /// Ground that counts as one independent sample: cells within about 15 m, the width of a wide road, err together. Only
-/// a unit, in which thresholds were chosen. Tracks, which would be sure too early with too many samples, count more
-/// ground as one (MeasurementModel::independent_m2).
+/// a unit, in which thresholds were chosen.
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
 /// Least SearchFigures::other_roads_across of a place. One straight road looks like every other, and so does a junction

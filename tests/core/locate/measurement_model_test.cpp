@@ -61,14 +61,14 @@ TEST(MeasurementModel, ByCorrelationHasAMeanRatioOfOneByChance) {
   model.useless_share = 0.0;
   model.temper = 1.0;
   model.expected_correlation = 0.03;
-  model.independent_m2 = 100.0;  // every cell of 10 m is a sample
+  model.most_samples = std::numeric_limits<double>::infinity();
   std::mt19937_64 random(3);
   double sum = 0.0;
   constexpr int kRuns = 2000;
   for (int i = 0; i < kRuns; ++i) {
     const Cells a = seen(random, 0.5, 0.5);
     const MatchSums s = sums_of(a.m, a.l);
-    sum += std::exp(model.log_likelihood(s, s.n, 10.0));
+    sum += std::exp(model.log_likelihood(s, s.n, 15.0));  // each cell is a sample
   }
   // ratio = exp(x - v / 2) with x normal of variance v = 2000 * 0.03^2: its own spread is sqrt(e^v - 1) = 2.25.
   EXPECT_NEAR(sum / kRuns, 1.0, 5.0 * 2.25 / std::sqrt(kRuns));
@@ -82,8 +82,26 @@ TEST(MeasurementModel, SaysAsMuchOfTheSameGroundInSmallerCells) {
     four_times.add(large.m[i / 4] ? 1.0 : 0.0, large.l[i / 4] ? 1.0 : 0.0);
   }
   const MeasurementModel model;
-  EXPECT_NEAR(model.log_likelihood(four_times, 8000, 8.0), model.log_likelihood(sums_of(large.m, large.l), 2000, 16.0),
+  EXPECT_NEAR(model.log_likelihood(four_times, 8000, 7.0), model.log_likelihood(sums_of(large.m, large.l), 2000, 14.0),
               1e-9);
+}
+
+TEST(MeasurementModel, SaysMoreOfMoreGroundButNeverMoreThanItsMostSamplesWould) {
+  MeasurementModel model;
+  model.useless_share = 0.0;
+  MatchSums sums;
+  double last = 0.0;
+  for (int doublings = 0; doublings < 16; ++doublings) {
+    for (std::int64_t cells = sums.n; cells < 100LL << doublings; cells += 5) {
+      for (int i = 0; i < 5; ++i) sums.add(i == 0 ? 1.0 : 0.0, i == 0 ? 1.0 : 0.0);  // agrees wholly
+    }
+    const double said = model.log_likelihood(sums, sums.n, 15.0);
+    EXPECT_GT(said, last);
+    last = said;
+  }
+  // As many samples of correlation 1: the limit, of which 3.3 million cells lack a 20,000th.
+  const double c = model.expected_correlation;
+  EXPECT_NEAR(last, model.temper * c * (1.0 - 0.5 * c) * model.most_samples, 0.01);
 }
 
 TEST(MeasurementModel, FallsNoFurtherThanTheShareOfUselessFrames) {

@@ -72,6 +72,19 @@ void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_sour
   }
 }
 
+/// GDAL fits a polynomial of second order to six control points or more.
+void require_fitting_points(const RasterFile& file) {
+  GDALDataset& dataset = file.dataset();
+  if (dataset.GetGCPCount() == 0 || geotransform_of(dataset)) return;
+  const GdalMessages messages;
+  if (PixelTransformerPtr(GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&dataset), nullptr, nullptr))) return;
+  throw InvalidInput("image-without-georeference",
+                     fmt::format("{}: its {} control points lie so that nothing fits them ({}), as on a line or two, "
+                                 "on one another, or along the rim alone: give it others, or make an orthoimage by a "
+                                 "simpler fit where they allow one (gdalwarp -order 1)",
+                                 file.path(), dataset.GetGCPCount(), messages.text()));
+}
+
 /// West, south, east and north of the image in degrees, as GDAL wants them. Left to itself GDAL (3.6) counts the
 /// longitudes from the prime meridian of the reference system, finds no way from its datum around there, and leaves the
 /// datum as it is. Empty where it cannot be told.
@@ -113,6 +126,7 @@ PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialR
   PixelTransformerPtr transformer(
       GDALCreateGenImgProjTransformer2(GDALDataset::ToHandle(&file.dataset()), nullptr, options.List()));
   if (!transformer) {
+    require_fitting_points(file);
     throw InvalidInput(
         "crs-not-transformable",
         fmt::format("{}: no way from its reference system {} to {} ({}); if it is wrong, {}", file.path(),

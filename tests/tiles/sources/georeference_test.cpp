@@ -92,6 +92,20 @@ TEST_F(GeoreferenceTest, PixelsWithoutAreaAreNotBlamedOnTheReferenceSystem) {
   }
 }
 
+TEST_F(GeoreferenceTest, ControlPointsThatNothingFitsAreNotBlamedOnTheReferenceSystem) {
+  const auto message_where = [&](const std::vector<std::array<double, 2>>& places) {
+    testing::RasterSpec spec;
+    for (const auto& [col, row] : places) spec.control_points.push_back({col, row, 400000.0 + col, 4200064.0 - row});
+    const RasterFile file(write_raster(folder / "a.tif", spec, grey), {});
+    return testing::message_of([&] { centre_of(file); });
+  };
+  EXPECT_EQ(message_where({{0, 0}, {64, 0}, {0, 64}, {64, 64}}), "no error");
+  EXPECT_THAT(message_where({{0, 0}, {32, 32}, {64, 64}}), ::testing::HasSubstr("its 3 control points lie so that"));
+  EXPECT_THAT(message_where({{0, 0}, {32, 0}, {64, 0}, {0, 64}, {32, 64}, {64, 64}}),
+              ::testing::HasSubstr("gdalwarp -order 1"))
+      << "two lines";
+}
+
 TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
   std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";

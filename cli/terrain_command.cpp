@@ -104,7 +104,8 @@ void add_terrain_command(CLI::App& app) {
       "  roadfix terrain city.gpkg N37E038.hgt N37E039.hgt --licence \"public domain\" --attribution \"SRTM, "
       "NASA/USGS\"\n"
       "  roadfix terrain city.gpkg --remove\n"
-      "Heights are above the sea, in metres unless the file says feet. They are kept in cells of 32 m, of 64 m and "
+      "Heights are above the sea, in metres or feet, as the file says; where it says nothing, in metres, unless its "
+      "coordinates are in feet: then it has to say so. They are kept in cells of 32 m, of 64 m and "
       "more for maps of more than 130 x 130 km, for the map's ground and 2 km around it. A map that has grown needs "
       "them anew; those that it had are replaced. If it is interrupted, the map is as it was.");
   command->add_option("map", a->map, "Map file (GeoPackage)")->required();

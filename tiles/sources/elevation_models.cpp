@@ -65,13 +65,39 @@ void require_above_sea(const RasterFile& file) {
           file.path(), file.path()));
 }
 
-double metres_of_unit(const RasterFile& file) {
+/// As programs and formats write it, in small letters; nullopt of others.
+std::optional<double> metres_of(const std::string& unit) {
+  constexpr std::array<std::string_view, 6> kMetres{"m", "metre", "metres", "meter", "meters", "[m]"};
   constexpr std::array<std::string_view, 4> kFeet{"ft", "foot", "feet", "international foot"};
-  constexpr std::array<std::string_view, 4> kSurveyFeet{"ftus", "us survey foot", "us survey feet", "us_survey_foot"};
+  constexpr std::array<std::string_view, 6> kSurveyFeet{"ftus",           "us-ft",          "us survey foot",
+                                                        "us survey feet", "us_survey_foot", "foot_us"};
+  const auto is_of = [&](const auto& words) { return std::ranges::find(words, unit) != words.end(); };
+  if (is_of(kMetres)) return 1.0;
+  if (is_of(kFeet)) return 0.3048;
+  return is_of(kSurveyFeet) ? std::optional(1200.0 / 3937.0) : std::nullopt;
+}
+
+/// Where the file says nothing, metres, as heights nearly always are but beside coordinates in feet.
+double metres_of_unit(const RasterFile& file) {
+  constexpr std::array<std::string_view, 4> kNothing{"", "unspecified", "unknown", "none"};
+  constexpr std::string_view kSayUnit =
+      "say whether they are metres or feet (gdal_edit.py -units m, or ft); turn other units into metres first";
   const std::string unit = lower_case(trimmed(file.first_band().GetUnitType()));
-  if (std::ranges::find(kFeet, unit) != kFeet.end()) return 0.3048;
-  if (std::ranges::find(kSurveyFeet, unit) != kSurveyFeet.end()) return 1200.0 / 3937.0;
-  return unit.empty() && file.crs().IsVertical() != FALSE ? file.crs().GetTargetLinearUnits("VERT_CS") : 1.0;
+  const OGRSpatialReference& crs = file.crs();
+  if (std::ranges::find(kNothing, unit) == kNothing.end()) {
+    if (const std::optional<double> metres = metres_of(unit)) return *metres;
+    throw InvalidInput(
+        "elevation-unit-unknown",
+        fmt::format("{}: its heights are in '{}', of which nothing is known: {}", file.path(), unit, kSayUnit));
+  }
+  if (crs.IsVertical() != FALSE) return crs.GetTargetLinearUnits("VERT_CS");
+  const char* name = nullptr;
+  if (crs.IsProjected() == FALSE || crs.GetLinearUnits(&name) == 1.0) return 1.0;
+  throw InvalidInput(
+      "elevation-unit-unknown",
+      fmt::format("{}: its reference system {} counts in '{}', and nothing tells whether its heights do, "
+                  "too: {}",
+                  file.path(), crs_name(crs), name, kSayUnit));
 }
 
 HeightScale scale_of(const RasterFile& file) {

@@ -25,8 +25,8 @@ struct ElevationReading {
 
 /// Mean heights of the cells, of which at least half has to be known: of the finer model where both know, and of both
 /// where they meet. Throws what RasterFile and Georeference throw, InvalidInput ("elevation-not-heights",
-/// "elevation-above-ellipsoid", "elevation-impossible", "elevation-beyond-map" where no model knows any height) and
-/// Interrupted ("work-stopped").
+/// "elevation-above-ellipsoid", "elevation-unit-unknown", "elevation-impossible", "elevation-beyond-map" where no model
+/// knows any height) and Interrupted ("work-stopped").
 ElevationReading read_elevation_models(const std::vector<std::string>& paths, UtmZone zone,
                                        const GridGeometry& geometry, const OnProgress& progress = {},
                                        std::stop_token stop = {});

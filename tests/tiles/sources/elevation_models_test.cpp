@@ -191,9 +191,10 @@ TEST_F(ElevationModels, RespectScaleOffsetAndUnit) {
   };
   EXPECT_NEAR(height("", 1.0, 0.0), 1000.0, 0.1);
   EXPECT_NEAR(height("metre", 1.0, 0.0), 1000.0, 0.1);
-  EXPECT_NEAR(height("chains", 1.0, 0.0), 1000.0, 0.1) << "no unit that is known";
+  EXPECT_NEAR(height("unspecified", 1.0, 0.0), 1000.0, 0.1);
   EXPECT_NEAR(height("ft", 1.0, 0.0), 304.8, 0.1);
-  EXPECT_NEAR(height("US survey foot", 1.0, 0.0), 304.8, 0.1);
+  for (const char* foot : {"US survey foot", "us-ft", "Foot_US"}) EXPECT_NEAR(height(foot, 1.0, 0.0), 304.8, 0.1);
+  EXPECT_EQ(code_of([&] { height("dm", 1.0, 0.0); }), "elevation-unit-unknown");
   EXPECT_NEAR(height("m", 0.1, 50.0), 150.0, 0.1);
   EXPECT_NEAR(height("ft", 0.1, 50.0), 150.0 * 0.3048, 0.1);
 }
@@ -208,6 +209,27 @@ TEST_F(ElevationModels, OfAVerticalReferenceSystemInFeetAreInFeet) {
     data->SetSpatialRef(&reference);
   }
   EXPECT_NEAR(read({path}).terrain.cell_height_m(20, 20).value(), 304.8, 0.1);
+}
+
+TEST_F(ElevationModels, BesideCoordinatesInFeetHaveToSayWhetherTheyAreInFeet) {
+  RasterSpec feet = spec(kCorner, 32.0, 64, 64);
+  feet.epsg = 0;
+  constexpr double kFootM = 1200.0 / 3937.0;
+  feet.transform =
+      std::array{kCorner.east_m / kFootM, 32.0 / kFootM, 0.0, kCorner.north_m / kFootM, 0.0, -32.0 / kFootM};
+  const std::string path = write("a.tif", feet, [](int, int, int) { return 1000.0; });
+  const auto height = [&](const char* unit) {
+    {
+      const DatasetPtr data(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+      const OGRSpatialReference reference = parse_crs("+proj=utm +zone=37 +datum=WGS84 +units=us-ft");
+      data->SetSpatialRef(&reference);
+      data->GetRasterBand(1)->SetUnitType(unit);
+    }
+    return read({path}).terrain.cell_height_m(20, 20).value();
+  };
+  EXPECT_THAT(message_of([&] { height(""); }), HasSubstr("counts in 'US survey foot', and nothing tells whether"));
+  EXPECT_NEAR(height("ft"), 304.8, 0.1);
+  EXPECT_NEAR(height("m"), 1000.0, 0.1);
 }
 
 TEST_F(ElevationModels, AboveTheEllipsoidAreRefusedAndAboveAGeoidAreNot) {

@@ -1,5 +1,6 @@
 #include "tiles/sources/position_error.hpp"
 
+#include <cpl_port.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/geotransform.hpp"
@@ -20,6 +22,11 @@ constexpr double kRpcSigmaM = 10.0;
 
 /// Of control points where an error of one would not show.
 constexpr double kUncheckedSigmaM = 10.0;
+
+/// Of coordinates that are rounded to steps of a second and of a thousandth of a degree (the root of a twelfth of
+/// them).
+constexpr double kSecondSigmaM = 9.0;
+constexpr double kThousandthSigmaM = 32.0;
 
 /// From how many points on GDAL fits a polynomial of second order to them, of first to fewer.
 constexpr int kSecondOrderPoints = 6;
@@ -86,10 +93,29 @@ PositionError error_of_control_points(const RasterFile& file, UtmZone zone) {
                                       file.path(), count, errors.sigma_m)};
 }
 
+/// NITF tells its corners in coarse steps of degrees, unless a segment for it (BLOCKA) tells them again. Copies in
+/// other formats keep these words, whether they lie there or were placed anew.
+PositionError error_of_rounded_corners(const RasterFile& file) {
+  GDALDataset& dataset = file.dataset();
+  const char* coordinates = dataset.GetMetadataItem("NITF_ICORDS");
+  if (!EQUAL(dataset.GetDriverName(), "NITF") || coordinates == nullptr) return {};
+  if (dataset.GetMetadataItem("NITF_BLOCKA_BLOCK_COUNT") != nullptr) return {};
+  const bool seconds = EQUAL(coordinates, "G") || EQUAL(coordinates, "C");
+  if (!seconds && !EQUAL(coordinates, "D")) return {};
+  const double sigma_m = seconds ? kSecondSigmaM : kThousandthSigmaM;
+  return {sigma_m,
+          fmt::format("{}: as NITF it tells its corners to {} only, and so uncertain is where it lies ({} m, 1 sigma). "
+                      "Get it as GeoTIFF from its maker, since a copy that is made of this file lies no better; where "
+                      "you have checked it, give --registration-sigma",
+                      file.path(), seconds ? "a second" : "a thousandth of a degree", sigma_m)};
+}
+
 PositionError error_of_placing(const RasterFile& file, UtmZone zone) {
   const bool has_transform = geotransform_of(file.dataset()).has_value();
   const bool has_points = !has_transform && file.dataset().GetGCPCount() > 0;
   PositionError placing = has_points ? error_of_control_points(file, zone) : PositionError{};
+  PositionError corners = error_of_rounded_corners(file);
+  if (corners.sigma_m > placing.sigma_m) placing = std::move(corners);
   if (file.dataset().GetMetadata("RPC") == nullptr || placing.sigma_m >= kRpcSigmaM) return placing;
   if (has_transform || has_points) {
     return {

@@ -21,7 +21,8 @@ PositionError datum_error(const OGRSpatialReference& reference, UtmZone zone, La
 
 struct PositionErrors {
   /// Of ground control points: how far they lie from where the others put them; what is usual where an error in one
-  /// would not show. Of RPC without a terrain model, also beside a geotransform: what is usual.
+  /// would not show. Of RPC without a terrain model, also beside a geotransform: what is usual. Of NITF whose corners
+  /// are rounded: what that makes.
   PositionError placing;
   PositionError datum;  ///< adds to what placed the raster in its reference system
 };

@@ -102,7 +102,10 @@ void run(const IngestArguments& arguments) {
   require_name(arguments.map);
   keep_temporary_files_beside(arguments.map);
   std::vector<SourceRequest> requests;
-  for (const std::string& source : arguments.sources) requests.push_back(request_of(arguments, source));
+  for (const std::string& source : arguments.sources) {
+    requests.push_back(request_of(arguments, source));
+    requests.back().vectors.stop = stop;
+  }
   refuse_without_effect(arguments, requests);
   for (std::size_t i = 0; i < requests.size(); ++i) {
     refuse_the_map_itself(requests[i].files, arguments.map);

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <map>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct VectorOptions {
   /// (of OGR, or a polygon filter of Osmosis), whose holes are not covered; empty = bounding box of the lines of each
   /// layer, at least 32 m and twice the widest road across (of the tile for vector tiles).
   std::string extent;
+  std::stop_token stop = {};  ///< ends the reading of features: those of a country take minutes
 };
 
 struct RoadLine {

@@ -173,6 +173,9 @@ void VectorFile::for_each_feature_of(OGRLayer& layer, const Visit& visit) {
 
 /// Refuses what GDAL says of reading alone: what PROJ says of coordinates while features are visited is no damage.
 OGRFeatureUniquePtr VectorFile::read(const std::function<OGRFeature*()>& next) const {
+  if (options_.stop.stop_requested()) {
+    throw Interrupted("work-stopped", fmt::format("stopped while {} was read: the map is as it was", path_));
+  }
   const GdalMessages messages;
   OGRFeatureUniquePtr feature(next());
   refuse_unread(messages);

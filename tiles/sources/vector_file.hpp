@@ -49,8 +49,8 @@ class VectorFile {
   /// state it, or wrongly, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
-  /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable" or
-  /// IoFailure "temporary-files-refused".
+  /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable",
+  /// IoFailure "temporary-files-refused", or Interrupted "work-stopped".
   void for_each_feature(const Visit& visit);
 
  private:

@@ -11,6 +11,7 @@
 #include <filesystem>
 #include <mutex>
 #include <string_view>
+#include <system_error>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
@@ -31,12 +32,23 @@ std::string begin_of(const std::string& path) {
   return bytes;
 }
 
+bool is_web_page(const std::string& begin) {
+  const std::string text = lower_case(begin.substr(std::min(begin.size(), begin.find_first_not_of(" \t\r\n"))));
+  return text.starts_with("<!doctype html") || text.starts_with("<html");
+}
+
 /// What to do with a file that no driver opens.
 std::string_view remedy(const std::string& path) {
   constexpr std::array<std::string_view, 8> kPacked{".gz", ".bz2", ".xz", ".zst", ".7z", ".rar", ".tar", ".tgz"};
   const std::string ending = lower_case(std::filesystem::path(path).extension().string());
   if (std::ranges::find(kPacked, ending) != kPacked.end()) return "it is packed: unpack it first";
+  if (ending == ".shp" && !std::filesystem::exists(std::filesystem::path(path).replace_extension(".shx"))) {
+    return "a Shapefile is several files of one name: put its .shx, .dbf and .prj beside it";
+  }
   const std::string begin = begin_of(path);
+  std::error_code none;  // of a path that only GDAL knows
+  if (std::filesystem::file_size(path, none) == 0) return "it holds nothing: fetch it again";
+  if (is_web_page(begin)) return "it is a web page, as servers send in place of what they do not give: fetch it again";
   if (begin.starts_with('{') && begin.find("\"elements\"") != std::string::npos) {
     return "it looks like JSON of Overpass: export it as GeoJSON, or with [out:xml] into a file whose name ends in "
            ".osm";

@@ -150,6 +150,12 @@ TEST_F(SourceFilesTest, FilesThatOnlyNeedAnotherFormatSayWhich) {
   EXPECT_THAT(advice("a.json", R"({"version":0.6,"generator":"Overpass API","elements":[]})"),
               ::testing::HasSubstr("[out:xml]"));
   EXPECT_THAT(advice("b.json", R"({"version":1})"), ::testing::HasSubstr("ogrinfo on it tells more"));
+  EXPECT_THAT(advice("c.json", ""), ::testing::HasSubstr("it holds nothing"));
+  EXPECT_THAT(advice("c.tif", "\n<!DOCTYPE html><html><title>Log in</title></html>"),
+              ::testing::HasSubstr("it is a web page"));
+  const std::string shapes = folder / "c.shp";
+  std::ofstream(shapes) << std::string("\0\0\x27\x0a", 4);
+  EXPECT_THAT(testing::message_of([&] { open_dataset(shapes, GDAL_OF_VECTOR); }), ::testing::HasSubstr("put its .shx"));
 }
 
 TEST_F(SourceFilesTest, AFolderIsOneSourceOfAllItsImagesInOrder) {

@@ -32,22 +32,34 @@ void add_line(const JsonField& positions, Route& route) {
   for (const JsonField& place : positions.elements()) add_place(place, route);
 }
 
+void add_lines(const JsonField& geometry, const std::string& type, Route& route) {
+  const JsonField coordinates = geometry.at("coordinates");
+  if (type == "LineString") {
+    add_line(coordinates, route);
+  } else {
+    for (const JsonField& part : coordinates.elements()) add_line(part, route);
+  }
+}
+
+/// The first line, with a word on the others, or else all points.
 Route line_in(const JsonField& document) {
+  Route line;
   Route points;
+  int number = 0;
   for (const JsonField& geometry : geometries_of(document)) {
+    ++number;
     const std::string type = geometry.at("type").text();
-    Route line;
-    if (type == "LineString") {
-      add_line(geometry.at("coordinates"), line);
-      return line;
-    }
-    if (type == "MultiLineString") {
-      for (const JsonField& part : geometry.at("coordinates").elements()) add_line(part, line);
-      return line;
+    if (type == "LineString" || type == "MultiLineString") {
+      if (line.places.empty()) {
+        add_lines(geometry, type, line);
+      } else {
+        line.left_out.push_back(
+            fmt::format("geometry {}, a {}: a route is one line, and the first one is taken", number, type));
+      }
     }
     if (type == "Point") add_place(geometry.at("coordinates"), points);
   }
-  return points;
+  return line.places.empty() ? points : line;
 }
 
 }  // namespace

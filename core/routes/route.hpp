@@ -36,7 +36,7 @@ struct RouteHome {
 
 struct Route {
   std::vector<RoutePlace> places;     ///< in the order in which they are flown to; two at least
-  std::vector<std::string> left_out;  ///< parts of a plan whose way is not known, named for the user
+  std::vector<std::string> left_out;  ///< parts of a plan whose way is not known, lines beyond the first; for the user
   RouteHome home;                     ///< the first place, of a route that tells none
 };
 

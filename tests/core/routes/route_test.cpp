@@ -179,6 +179,9 @@ TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
   EXPECT_DOUBLE_EQ(parse_route(line).home.position.lat_deg, 57.5);
   EXPECT_THAT(parse_route(feature(line)).places, drawn);
   EXPECT_THAT(parse_route(collection(point + "," + feature("null") + "," + feature(line))).places, drawn);
+  const Route of_two = parse_route(collection(feature(line) + "," + point + "," + feature(line)));
+  EXPECT_THAT(of_two.places, drawn);
+  EXPECT_THAT(of_two.left_out, ElementsAre(HasSubstr("geometry 3, a LineString")));
   EXPECT_THAT(parse_route(collection(point + "," + point)).places, ElementsAre(place(2, 1), place(2, 1)));
   EXPECT_THAT(parse_route("\xEF\xBB\xBF" + feature(R"({"type":"MultiLineString","coordinates":)"
                                                    R"([[[179,1],[180,1]],[[-180,1],[-179,1]]]})"))

@@ -36,20 +36,45 @@ void require_pixels_with_area(const RasterFile& file) {
                                  file.path(), fmt::join(*to_reference, ", ")));
 }
 
-void require_likely_coordinates(const RasterFile& file) {
-  const auto transform = geotransform_of(file.dataset());
-  if (!transform) return;
-  const Geotransform& t = *transform;
+/// Where its geotransform or control points put a raster, and about how wide they make its pixels, in the units of its
+/// reference system.
+struct StatedPlace {
   OGREnvelope box;
-  for (const int col : {0, file.size().width}) {
-    for (const int row : {0, file.size().height}) {
-      box.Merge(t[0] + t[1] * col + t[2] * row, t[3] + t[4] * col + t[5] * row);
+  double pixel = 0.0;
+};
+
+StatedPlace place_of(const Geotransform& t, cv::Size size) {
+  StatedPlace place;
+  for (const int col : {0, size.width}) {
+    for (const int row : {0, size.height}) {
+      place.box.Merge(t[0] + t[1] * col + t[2] * row, t[3] + t[4] * col + t[5] * row);
     }
   }
+  place.pixel = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4]));
+  return place;
+}
+
+StatedPlace place_by_points(GDALDataset& dataset) {
+  StatedPlace place;
+  OGREnvelope pixels;
+  for (int i = 0; i < dataset.GetGCPCount(); ++i) {
+    const GDAL_GCP& point = dataset.GetGCPs()[i];
+    place.box.Merge(point.dfGCPX, point.dfGCPY);
+    pixels.Merge(point.dfGCPPixel, point.dfGCPLine);
+  }
+  const auto diagonal = [](const OGREnvelope& of) { return std::hypot(of.MaxX - of.MinX, of.MaxY - of.MinY); };
+  place.pixel = diagonal(place.box) / diagonal(pixels);
+  return place;
+}
+
+void require_likely_coordinates(const RasterFile& file) {
+  const auto transform = geotransform_of(file.dataset());
+  if (!transform && file.dataset().GetGCPCount() == 0) return;
+  const StatedPlace place = transform ? place_of(*transform, file.size()) : place_by_points(file.dataset());
   // No camera's pixels are as fine in metres as pixels of degrees look there.
-  const double side_m = std::sqrt(std::abs(t[1] * t[5] - t[2] * t[4])) * file.crs().GetLinearUnits();
-  if (side_m < kFinestGsdM) refuse_degrees_as_metres(box, file.crs(), file.path());
-  refuse_swapped_axes(box, file.crs(), file.path());
+  const double side_m = place.pixel * file.crs().GetLinearUnits();
+  if (side_m < kFinestGsdM) refuse_degrees_as_metres(place.box, file.crs(), file.path());
+  refuse_swapped_axes(place.box, file.crs(), file.path());
 }
 
 void transform(void* transformer, std::vector<cv::Point2d>& points, bool to_source) {

@@ -136,6 +136,21 @@ TEST_F(GeoreferenceTest, AWorldFileMayHaveItsReferenceSystemInAPrjFile) {
   EXPECT_EQ(code_of([&] { centre_of(RasterFile(path, {})); }), "axes-swapped") << "its WKT has no codes";
 }
 
+TEST_F(GeoreferenceTest, ControlPointsAreNotTakenForMetresOrTheRightWayRoundWhereTheyAreNot) {
+  const auto code_where = [&](int epsg, double x, double y, double pixel) {
+    testing::RasterSpec spec{.epsg = epsg};
+    for (const double row : {0.0, 64.0}) {
+      for (const double col : {0.0, 64.0}) spec.control_points.push_back({col, row, x + pixel * col, y - pixel * row});
+    }
+    const std::string path = write_raster(folder / "a.tif", spec, grey);
+    return code_of([&] { centre_of(RasterFile(path, {})); });
+  };
+  EXPECT_EQ(code_where(32637, 400'000, 4'200'000, 0.5), "no error");
+  EXPECT_EQ(code_where(32637, 4'200'000, 400'000, 0.5), "axes-swapped");
+  EXPECT_EQ(code_where(32637, 38.26, 37.76, 5e-6), "degrees-as-metres");
+  EXPECT_EQ(code_where(4326, 38.26, 37.76, 5e-6), "no error");
+}
+
 TEST_F(GeoreferenceTest, SwappedEastingAndNorthingAreRefused) {
   const auto code_where = [&](int epsg, double east_m, double north_m) {
     const std::array<double, 6> transform{east_m, 0.5, 0, north_m, 0, -0.5};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "core/locate/odometry_noise.hpp"
@@ -21,8 +22,10 @@ constexpr double kLeastManoeuvreMS = 1.0;
 constexpr double kTurnLastsS = 3.0;
 constexpr double kTurnDoubt = 0.5;
 
-// At most: of a vehicle whose motion is not told, and of the wind.
+// At most: of a vehicle whose odometry is not told, the speed that is told for it, and the wind.
 constexpr double kStraySpeeds = 2.0;
+constexpr double kStrayMS2 = 10.0;  // by which it changes its velocity
+constexpr double kSpeedSigmas = 2.0;
 constexpr double kWindSigmas = 2.0;
 
 // 1 sigma per axis of the wind that is learned once the odometry was found to be wrong, unless a stronger one was told.
@@ -72,10 +75,21 @@ double StepMotion::move(Filter& filter) {
 }
 
 void StepMotion::carry(Reach& reach) const {
-  if (!told_.odometry) return reach.stray(kStraySpeeds * travelled_m() + kLeastManoeuvreMS * told_.seconds);
+  if (!told_.odometry) return reach.stray(strays_by_m());
   const auto [odometry, covariance] =
       with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
   reach.move(odometry, covariance, kWindSigmas * wind().sigma_m_s * told_.seconds);
+}
+
+double StepMotion::strays_by_m() const {
+  if (vehicle_.planar) {
+    const auto [mean, sigma] = vehicle_.planar->speed_m_s;
+    return told_.seconds * (kStraySpeeds * std::abs(mean) + kSpeedSigmas * sigma + kWindSigmas * wind().sigma_m_s);
+  }
+  if (!learned_.velocity) return std::numeric_limits<double>::infinity();
+  const auto faster_by_m = [](double seconds) { return 0.5 * kStrayMS2 * seconds * seconds; };
+  return kStraySpeeds * travelled_m() + faster_by_m(learned_.coasted_s + told_.seconds) -
+         faster_by_m(learned_.coasted_s);
 }
 
 void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }

@@ -64,6 +64,8 @@ class StepMotion {
 
  private:
   bool coasts() const { return !told_.odometry && !vehicle_.planar; }
+  /// How far at most without odometry. Infinite where nobody knows how fast it is.
+  double strays_by_m() const;
   Wind wind() const;
   void learn_velocity(const Odometry& odometry);
   double follow_odometry(Filter& filter, bool coasted);

@@ -65,6 +65,33 @@ TEST(StepMotion, CarriesAReachByTheOdometryAndWhatItDoesNotFeel) {
   EXPECT_NEAR(untold.turned_at_most().degrees(), 180.0, 1e-9);
 }
 
+/// By how much a reach grows in a second without odometry.
+double strays_by_m(const VehicleNoise& vehicle, const LearnedMotion& learned) {
+  Reach reach{{500.0, 500.0}, Angle(), 30.0, Angle()};
+  StepMotion(vehicle, kFlight, {{}, {}, 1.0}, learned).carry(reach);
+  return reach.radius_m - 30.0;
+}
+
+TEST(StepMotion, LosesAReachWhereNobodyKnowsHowFastTheVehicleIs) {
+  EXPECT_GT(strays_by_m({}, {}), Reach::kMaxM);
+  const LearnedMotion hovered{BodyVelocity{}, 0.0, false, false, 0.0};
+  EXPECT_GE(strays_by_m({}, hovered), 0.5 * 9.8) << "it flies off by as much as it weighs";
+  LearnedMotion untold = hovered;
+  untold.coasted_s = 4.0;
+  EXPECT_GE(strays_by_m({}, untold), 0.5 * 9.8 * (5.0 * 5.0 - 4.0 * 4.0)) << "faster from second to second";
+}
+
+TEST(StepMotion, CarriesAReachByASpeedThatIsToldAsFarAsThatMayBeOff) {
+  VehicleNoise vehicle;
+  vehicle.planar = VehicleNoise::Planar{{0.0, 12.0}, {}};
+  EXPECT_GE(strays_by_m(vehicle, {}), 2.0 * 12.0);
+  vehicle.wind = {7.0};
+  EXPECT_GE(strays_by_m(vehicle, {}), 2.0 * 12.0 + 2.0 * 7.0);
+  vehicle.planar->speed_m_s = {-20.0, 0.0};
+  EXPECT_GE(strays_by_m(vehicle, {}), 20.0 + 2.0 * 7.0);
+  EXPECT_LT(strays_by_m(vehicle, {}), Reach::kMaxM);
+}
+
 TEST(StepMotion, TakesNoVelocityFromAStepTooShortToTellOne) {
   const VehicleNoise vehicle;
   StepMotion motion(vehicle, kFlight, {Odometry{15.0, 0.0, {}}, {}, 0.001}, kFlewAt20MS);

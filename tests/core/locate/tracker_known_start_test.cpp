@@ -1,6 +1,8 @@
 // Tracks that begin where the vehicle surely is.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+
 #include "core/locate/tracker.hpp"
 #include "tests/core/locate/track_fixture.hpp"
 
@@ -77,6 +79,27 @@ TEST_F(KnownStart, IsOfNoUseAnyMoreAfterAFlightThatWentTooFarUnseen) {
   EXPECT_FALSE(state_.claim.confirmed);
   fly(tracker, flight, 15,
       [&](int i, const TrackEstimate& estimate) { EXPECT_FALSE(estimate.converged()) << "step " << i; });
+}
+
+TEST_F(KnownStart, BoundsNothingOfAVehicleThatFliesOffAndDoesNotTellHow) {
+  for (const int hovering : {0, 12}) {
+    const Tracker tracker(blocks_view_, settings_at(start_));
+    Flight flight = flight_over(blocks_, start_, 1);
+    flight.step_m = 0.0;
+    state_ = {};
+    EXPECT_EQ(fly(tracker, flight, hovering).converged(), hovering > 0);
+    for (int i = 0; i < 25; ++i) {
+      // A block further with each frame, and after eight of them back again: all look alike.
+      const int blocks = i % 16 < 8 ? i % 8 + 1 : 8 - i % 8;
+      flight.jump_to({{start_.position.east_m + 100.0 * blocks, start_.position.north_m}, start_.heading});
+      StepInput step = flight.step();
+      step.odometry.reset();
+      step.time_us += std::int64_t{4'000'000} * (i + 1);  // 20 m/s
+      const TrackEstimate estimate = advance(tracker, step);
+      EXPECT_FALSE(estimate.converged()) << "hovered " << hovering << ", step " << i << ", "
+                                         << error_m(estimate, flight.pose()) << " m off";
+    }
+  }
 }
 
 TEST_F(KnownStart, IsDroppedWhereFramesContradictWhatWasClaimed) {

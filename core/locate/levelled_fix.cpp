@@ -103,13 +103,14 @@ Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map,
   const Altitude there{altitude->above_sea_m, agl_at(map, *altitude, place.position)};
   Fix again = locate_frames(there, map, levelled_frames(map, frames, *altitude, place), prior, options);
   again.search_time += fix.search_time;
-  if (!again.complete || again.modes.empty()) return fix;
-  if (is_found_again(on_grid(again.modes.front().pose, map.zone), place)) return again;
-  if (claims_a_place(fix)) {
-    refuse_place(fix, "terrain-contradicts",
-                 "the roads fit best at a place where the relief of the ground should displace them otherwise: check "
-                 "the heights of the map's ground, and the height above it or the sea");
+  if (again.complete && !again.modes.empty() && is_found_again(on_grid(again.modes.front().pose, map.zone), place)) {
+    return again;
   }
+  if (!claims_a_place(fix)) return fix;
+  if (!again.complete) return again;
+  refuse_place(fix, "terrain-contradicts",
+               "the roads fit best at a place where the relief of the ground should displace them otherwise: check the "
+               "heights of the map's ground, and the height above it or the sea");
   return fix;
 }
 

@@ -19,8 +19,8 @@ std::vector<PlacedFeatures> levelled_frames(const MapView& map, std::span<const 
                                             const Altitude& altitude, const GridPose& place);
 
 /// locate_from(), and where the relief around the best place displaces what was seen, once more with that levelled. The
-/// second search has to find that place again; if not, it is no likely one ("terrain-contradicts"). Nothing is levelled
-/// where `altitude` is nullopt.
+/// second search has to find that place again; if not, it is no likely one ("terrain-contradicts"), nor where the time
+/// is over before ("search-time-limit"). Nothing is levelled where `altitude` is nullopt.
 Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map, const FeatureMap& features,
                     const Prior& prior, const FixOptions& options);
 

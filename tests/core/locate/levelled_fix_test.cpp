@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <cstdint>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "core/grid/relief.hpp"
 #include "core/grid/resample.hpp"
@@ -67,6 +70,27 @@ TEST_F(Slopes, AreNoneWhereNothingShowsThem) {
   };
   EXPECT_EQ(refusal_from(120.0), "not-above-chance");
   EXPECT_EQ(refusal_from(60.0), "terrain-contradicts") << "the place is not found again";
+}
+
+TEST_F(Slopes, AreNoneWhereTheTimeIsOverBeforeThePlaceIsFoundAgain) {
+  const GridPose truth = pose_within(view_.extent, 350.0, random_);
+  const FeatureMap level = observed_at(map_, truth, 180, 180, 2.0, {0.1, 0.1}, random_);
+  const Altitude altitude{std::nullopt, 60.0};
+  const Fix as_shown = locate_from(altitude, view_, level, {}, {});
+  ASSERT_EQ(as_shown.status, FixStatus::kFix) << "though levelled it lies elsewhere";
+  // The second search begins when the time is over.
+  const auto end = std::chrono::steady_clock::now() + 3 * as_shown.search_time + std::chrono::milliseconds(200);
+  std::int64_t furthest = 0;
+  FixOptions options;
+  options.search.deadline = Deadline({}, std::chrono::time_point_cast<std::chrono::steady_clock::duration>(end));
+  options.search.progress = [&](std::int64_t done, std::int64_t) {
+    if (done < furthest) std::this_thread::sleep_until(end);
+    furthest = done;
+  };
+  const Fix fix = locate_levelled(altitude, view_, level, {}, options);
+  EXPECT_EQ(fix.status, FixStatus::kNoFix);
+  EXPECT_EQ(fix.reason, "search-time-limit");
+  EXPECT_FALSE(fix.complete);
 }
 
 TEST_F(Slopes, AreLevelledInEachOfSeveralFramesFromItsOwnHeight) {

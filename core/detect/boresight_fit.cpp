@@ -63,11 +63,13 @@ class Fitting {
     for (int round = 0; round < kRounds; ++round) {
       for (int step = 0; step < 4; ++step) improve();
       take_residuals();
-      sigma_ = scatter();
       const std::vector<bool> before = fit_.used;
       leave_out_those_elsewhere();
+      sigma_ = scatter();
       if (round > 0 && fit_.used == before) break;
     }
+    improve();  // by the scatter of those that are left
+    take_residuals();
     return fit_;
   }
 

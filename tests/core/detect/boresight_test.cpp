@@ -182,6 +182,33 @@ TEST(BoresightOfAFlight, LeavesOutFramesThatLieElsewhere) {
   EXPECT_LT(sigmas_off(found.roll_deg, -1.5), 4.0);
 }
 
+TEST(BoresightOfAFlight, IsAsSureAsWithoutFramesThatLieElsewhere) {
+  double squares = 0.0;
+  constexpr int kFlights = 20;
+  for (int flight = 0; flight < kFlights; ++flight) {
+    std::vector<BoresightSighting> all = SimulatedFlight{}.fly(static_cast<std::uint64_t>(flight));
+    std::vector<BoresightSighting> right;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i % 5 == 0) {
+        all[i].found.position.east_m += 60.0;
+      } else {
+        right.push_back(all[i]);
+      }
+    }
+    const Boresight found = boresight_of(all, {});
+    const Boresight without = boresight_of(right, {});
+    ASSERT_EQ(found.used_count(), without.used_count());
+    EXPECT_NEAR(found.pitch_deg.sigma / without.pitch_deg.sigma, 1.0, 0.1) << flight;
+    EXPECT_NEAR(found.east_m.sigma / without.east_m.sigma, 1.0, 0.1) << flight;
+    EXPECT_NEAR(found.size.sigma / without.size.sigma, 1.0, 0.1) << flight;
+    for (const double off : {sigmas_off(found.pitch_deg, 2.0), sigmas_off(found.roll_deg, -1.5),
+                             sigmas_off(found.east_m, 0.0), sigmas_off(found.north_m, 0.0)}) {
+      squares += off * off;
+    }
+  }
+  EXPECT_LT(squares / (4.0 * kFlights), 1.6) << "four deviations above 1";
+}
+
 TEST(BoresightOfAFlight, DoesNotTellAMountFromAMapThatIsOffWhereAllHeadingsAreAlike) {
   const Boresight one =
       boresight_of(SimulatedFlight{.heading_range_deg = 1.0, .lean_deg = 0.5}.fly(2), {.place_sigma_m = 4.0});

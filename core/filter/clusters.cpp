@@ -126,10 +126,7 @@ std::vector<std::vector<std::size_t>> groups_of(const Particles& particles) {
 
 }  // namespace
 
-double Cluster::sigma_m() const {
-  const double mean2 = 0.5 * (covariance[0][0] + covariance[1][1]);
-  return std::sqrt(mean2 + std::hypot(0.5 * (covariance[0][0] - covariance[1][1]), covariance[0][1]));
-}
+double Cluster::sigma_m() const { return std::sqrt(largest_variance_m2(covariance)); }
 
 std::vector<Cluster> clusters_of(const Particles& particles) {
   std::vector<Cluster> clusters;

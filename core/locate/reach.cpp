@@ -27,7 +27,7 @@ Reach Reach::around(const GridPose& found) { return {found.position, found.headi
 
 void Reach::move(const Odometry& odometry, const OdometryCovariance& covariance, double drift_m) {
   const double length_m = distance_m(odometry);
-  const double sigma_m = std::sqrt(std::max(covariance[0][0], covariance[1][1]));
+  const double sigma_m = std::sqrt(largest_variance_m2(covariance));
   const Angle off = turned_at_most();
   const GridPose there = moved(GridPose{position, heading}, odometry);
   if (off <= kKnownHeading) {

@@ -42,7 +42,7 @@ void RecentFrames::move(const Odometry& odometry, const OdometryCovariance& cova
     BodyOffset& offset = frame.placed.offset;
     offset = seen_after(odometry, offset);
     const double arm = distance_m(offset);
-    frame.position_m2 += std::max(covariance[0][0], covariance[1][1]) + arm * arm * covariance[2][2];
+    frame.position_m2 += largest_variance_m2(covariance) + arm * arm * covariance[2][2];
     frame.turn_rad2 += covariance[2][2];
   }
   std::erase_if(frames_, [](const Frame& frame) { return !is_near_enough(frame); });

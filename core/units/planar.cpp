@@ -5,6 +5,10 @@
 
 namespace roadfix {
 
+double largest_variance_m2(const PoseCovariance& c) {
+  return 0.5 * (c[0][0] + c[1][1]) + std::hypot(0.5 * (c[0][0] - c[1][1]), c[0][1]);
+}
+
 GridBox united(const GridBox& a, const GridBox& b) {
   return {{std::min(a.min.east_m, b.min.east_m), std::min(a.min.north_m, b.min.north_m)},
           {std::max(a.max.east_m, b.max.east_m), std::max(a.max.north_m, b.max.north_m)}};

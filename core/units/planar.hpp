@@ -25,6 +25,9 @@ struct GridPose {
 /// Covariance of east (m), north (m) and heading (rad, clockwise) about a pose.
 using PoseCovariance = std::array<std::array<double, 3>, 3>;
 
+/// Of the position along the longer axis of its ellipse, m^2; of what lies ahead and to the right likewise.
+double largest_variance_m2(const PoseCovariance& covariance);
+
 /// Where one pose of a body is, seen from another: so far ahead of it and to its right, turned so far clockwise.
 struct BodyOffset {
   double forward_m = 0.0;

@@ -58,6 +58,17 @@ TEST(Reach, StaysWhereItIsAndGrowsByTheWayWhereNoHeadingIsKnown) {
   EXPECT_NEAR(reach.radius_m, 50.0 + 20.0 + 2.0, 1e-9);
 }
 
+TEST(Reach, GrowsByTheLongerAxisOfTheErrorWhateverItsDirection) {
+  for (const double turned_deg : {0.0, 30.0, 45.0, 90.0}) {
+    const double s = sin(Angle::degrees(turned_deg));
+    const double c = cos(Angle::degrees(turned_deg));
+    const OdometryCovariance thin{{{9.0 * c * c, 9.0 * s * c, 0}, {9.0 * s * c, 9.0 * s * s, 0}, {0, 0, 0}}};
+    Reach reach = known_start(50.0, 0.0);
+    reach.move({20.0, 0.0, {}}, thin, 0.0);
+    EXPECT_NEAR(reach.radius_m, 50.0 + 2.0 * 3.0, 1e-9) << turned_deg;
+  }
+}
+
 TEST(Reach, MovesWithAKnownHeadingAndGrowsByLittle) {
   Reach reach = known_start(50.0, 6.0);
   reach.move({20.0, 0.0, Angle::degrees(5.0)}, covariance(1.0, 0.01), 3.0);

@@ -46,6 +46,13 @@ void Reach::stray(double by_m) {
   heading_half_width = kAnyHeading;
 }
 
+bool Reach::holds(const GridPose& believed) const {
+  constexpr double kBeliefM = 15.0;
+  const Angle belief_heading = Angle::degrees(5.0);
+  return distance_m(believed.position, position) <= radius_m + kBeliefM &&
+         angular_distance(believed.heading, heading) <= turned_at_most() + belief_heading;
+}
+
 Angle Reach::turned_at_most() const {
   return std::min(heading_half_width + Angle::radians(kTurnSigmas * std::sqrt(turn_rad2)), kAnyHeading);
 }

@@ -27,6 +27,8 @@ struct Reach {
   /// By so much, in whatever direction, turning by whatever angle.
   void stray(double by_m);
   bool is_lost() const { return radius_m > kMaxM; }
+  /// Whether the vehicle may be where a belief has it, which errs by some metres itself.
+  bool holds(const GridPose& believed) const;
   /// The vehicle's heading is not farther from `heading`.
   Angle turned_at_most() const;
 

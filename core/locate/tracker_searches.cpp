@@ -123,14 +123,16 @@ void Tracker::Step::recover() {
 
 /// A search of the whole map was not sure: what lies beyond reach need not be ruled out, and looks rule out what lies
 /// within it. Nothing is claimed where the roads fit far better elsewhere (the start was not where it was said to be,
-/// or the odometry is all wrong), nor at another size of the ground.
+/// or the odometry is all wrong), nor at another size of the ground; nor beyond reach, where particles are drawn, too.
 void Tracker::Step::rely_on_reach(const Fix& anywhere, const FeatureMap& seen, const GridPose& believed) {
   const std::optional<Prior> near = LookArea::around(believed, 0.0).prior(map_);
-  if (!near) return state_.claim.reopen();
+  if (!near || !state_.reach->holds(believed)) return state_.claim.reopen();
   const std::optional<Fix> here =
       search_.find(seen, *near, {.looks_beyond_prior = false, .search = {.scale_range = settings_.vehicle.scale_range}},
                    kHereTimeShare);
-  if (!here || here->modes.empty() || !is_at(believed, here->modes.front())) return state_.claim.reopen();
+  if (!here || !here->complete || here->modes.empty() || !is_at(believed, here->modes.front())) {
+    return state_.claim.reopen();
+  }
   const FixMode& best = anywhere.modes.front();
   const bool fits_elsewhere = !is_at(believed, best) && (anywhere.probability > kProbabilityElsewhere ||
                                                          here->modes.front().rho < kLeastShareOfBest * best.rho);

@@ -87,6 +87,18 @@ TEST(Reach, KnowsNoHeadingAnyMoreOnceTheMotionIsNotTold) {
   EXPECT_TRUE(reach.is_lost());
 }
 
+TEST(Reach, HoldsABeliefWithinItAndALittleBeyond) {
+  const Reach reach = known_start(50.0, 15.0);
+  const auto holds = [&](double east_m, double turn_deg) {
+    return reach.holds({{1000.0 + east_m, 2000.0}, Angle::degrees(30.0 + turn_deg)});
+  };
+  EXPECT_TRUE(holds(55.0, 0.0));
+  EXPECT_TRUE(holds(-55.0, 17.0));
+  EXPECT_FALSE(holds(80.0, 0.0)) << "less than a block";
+  EXPECT_FALSE(holds(0.0, 25.0));
+  EXPECT_FALSE(holds(0.0, -25.0));
+}
+
 TEST(Reach, IsNarrowAroundAPlaceThatWasJustFound) {
   const GridPose found{{12.0, 34.0}, Angle::degrees(56.0)};
   const Reach reach = Reach::around(found);

@@ -102,6 +102,22 @@ TEST_F(KnownStart, BoundsNothingOfAVehicleThatFliesOffAndDoesNotTellHow) {
   }
 }
 
+TEST_F(KnownStart, IsNoReasonToClaimAPlaceOutOfReachOfIt) {
+  const Tracker tracker(blocks_view_, settings_at(start_));
+  for (const double block : {-1.0, 1.0}) {
+    Flight flight = flight_over(blocks_, start_, 2);
+    state_ = {};
+    ASSERT_TRUE(fly(tracker, flight, 12).converged());
+    // The particles gather a block off, as those that are drawn anew may.
+    for (double& east_m : state_.filter.particles.east_m) east_m += 100.0 * block;
+    state_.claim.reopen();
+    fly(tracker, flight, 15, [&](int i, const TrackEstimate& estimate) {
+      EXPECT_FALSE(estimate.converged() && error_m(estimate, flight.pose()) > 25.0)
+          << "step " << i << ", " << error_m(estimate, flight.pose()) << " m off";
+    });
+  }
+}
+
 TEST_F(KnownStart, IsDroppedWhereFramesContradictWhatWasClaimed) {
   const Tracker tracker(blocks_view_, settings_at(start_));
   Flight flight = flight_over(blocks_, start_, 2);

@@ -80,8 +80,15 @@ LookArea LookArea::around(const GridPose& belief, double flown_m) {
   return {belief, std::clamp(flown_m, kLookRadiusM, kMaxLookRadiusM), kLookHeading};
 }
 
-LookArea LookArea::of(const Reach& reach) {
-  return {{reach.position, reach.heading}, reach.radius_m, reach.turned_at_most()};
+LookArea LookArea::of(const Reach& reach, const LookArea& around) {
+  return {{reach.position, reach.heading},
+          std::max(reach.radius_m, around.radius_m),
+          std::max(reach.turned_at_most(), around.heading_half_width)};
+}
+
+bool LookArea::covers(const Reach& reach) const {
+  return distance_m(centre.position, reach.position) + reach.radius_m <= radius_m &&
+         angular_distance(centre.heading, reach.heading) + reach.turned_at_most() <= heading_half_width;
 }
 
 std::optional<Prior> LookArea::prior(const MapView& map) const {

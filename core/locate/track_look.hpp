@@ -49,8 +49,9 @@ struct LookArea {
 
   /// As far around a belief as the odometry may have misled it since the last look, so much flown ago.
   static LookArea around(const GridPose& belief, double flown_m);
-  /// All of it.
-  static LookArea of(const Reach& reach);
+  /// All of it, and as far and as wide as `around`, which does not cover it.
+  static LookArea of(const Reach& reach, const LookArea& around);
+  bool covers(const Reach& reach) const;
   /// nullopt where it lies off the map.
   std::optional<Prior> prior(const MapView& map) const;
 };

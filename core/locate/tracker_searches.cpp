@@ -68,8 +68,7 @@ void Tracker::Step::look_around_if_due() {
 /// Where the vehicle may be beyond what looks cover by themselves, all of that: no search has ruled it out.
 LookArea Tracker::Step::look_area(const GridPose& believed) const {
   const LookArea area = LookArea::around(believed, state_.claim.flown_m);
-  const bool reaches_beyond = state_.reach && state_.reach->radius_m > area.radius_m;
-  return reaches_beyond ? LookArea::of(*state_.reach) : area;
+  return state_.reach && !area.covers(*state_.reach) ? LookArea::of(*state_.reach, area) : area;
 }
 
 void Tracker::Step::take(const Look& look, LookAge last) {

@@ -33,6 +33,21 @@ class TrackLook : public ::testing::Test {
   const FeatureMap frame_ = testing::observed_at(map_, truth_, 128, 128, 2.0, {0.15, 0.15}, random_);
 };
 
+TEST(LookArea, CoversAReachOfWhichNothingLiesBeyondIt) {
+  const GridPose belief{{100.0, 200.0}, Angle::degrees(355.0)};
+  const LookArea area = LookArea::around(belief, 0.0);
+  const auto reach = [](double east_m, double heading_deg, double radius_m, double half_deg) {
+    return Reach{{100.0 + east_m, 200.0}, Angle::degrees(heading_deg), radius_m, Angle::degrees(half_deg)};
+  };
+  EXPECT_TRUE(area.covers(reach(0.0, 355.0, 60.0, 15.0)));
+  EXPECT_TRUE(area.covers(reach(-25.0, 3.0, 30.0, 6.0)));
+  EXPECT_FALSE(area.covers(reach(-35.0, 3.0, 30.0, 6.0))) << "beyond its rim";
+  EXPECT_FALSE(area.covers(reach(-25.0, 6.0, 30.0, 6.0))) << "turned farther";
+  const LookArea all = LookArea::of(reach(-70.0, 90.0, 20.0, 180.0), area);
+  EXPECT_TRUE(all.covers(reach(-70.0, 90.0, 20.0, 180.0)));
+  EXPECT_EQ(all.radius_m, area.radius_m);
+}
+
 TEST_F(TrackLook, BearsOutAPlaceThatIsRight) {
   const Look look = look_from(beside(3.0));
   EXPECT_EQ(look.outcome, Look::Outcome::kBorneOut);

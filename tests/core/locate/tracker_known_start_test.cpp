@@ -118,6 +118,31 @@ TEST_F(KnownStart, IsNoReasonToClaimAPlaceOutOfReachOfIt) {
   }
 }
 
+TEST_F(KnownStart, WithoutAHeadingIsNoReasonToClaimOne) {
+  // In the middle of a crossing all looks alike in four directions.
+  const Tracker tracker(blocks_view_, settings_at(start_));
+  Flight flight = flight_over(blocks_, start_, 2);
+  flight.step_m = 0.0;
+  ASSERT_TRUE(fly(tracker, flight, 12).converged());
+  const GridPoint crossing{600'703.0, 6'399'397.0};
+  const Angle quarter = Angle::degrees(90.0);
+  Particles& p = state_.filter.particles;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const GridPoint off{p.east_m[i] - crossing.east_m, p.north_m[i] - crossing.north_m};
+    const GridPose turned{{crossing.east_m + off.north_m, crossing.north_m - off.east_m},
+                          (p.at(i).pose().heading + quarter).wrapped()};
+    p.east_m[i] = turned.position.east_m;
+    p.north_m[i] = turned.position.north_m;
+    p.heading_rad[i] = turned.heading.radians();
+  }
+  state_.reach->heading_half_width = Angle::degrees(180.0);
+  state_.claim.reopen();
+  fly(tracker, flight, 12, [&](int i, const TrackEstimate& estimate) {
+    EXPECT_FALSE(estimate.converged()) << "step " << i << ", turned by "
+                                       << heading_error(estimate, flight.pose()).degrees();
+  });
+}
+
 TEST_F(KnownStart, IsDroppedWhereFramesContradictWhatWasClaimed) {
   const Tracker tracker(blocks_view_, settings_at(start_));
   Flight flight = flight_over(blocks_, start_, 2);

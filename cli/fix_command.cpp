@@ -87,7 +87,7 @@ struct Search {
   std::optional<Altitude> altitude;     ///< of frames, where all have the same
   std::optional<double> takeoff_alt_m;  ///< of photos, whose files tell the rest
 
-  double agl_m(double above_sea_m) const { return required_agl(view, box, above_sea_m).middle_m(); }
+  double agl_m(double above_sea_m) const { return required_agl_m(view, box, above_sea_m); }
 };
 
 Search search_of(const FixArguments& options, bool several) {

@@ -82,7 +82,7 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   recorded.step_s = options.plan.handling.step_s;
   recorded.max_frames = static_cast<std::size_t>(options.steps.value_or(0));
   recorded.agl_m = [&map](GridPoint below, double above_sea_m) {
-    return required_agl(map, {below, below}, above_sea_m).middle_m();
+    return required_agl_m(map, {below, below}, above_sea_m);
   };
   Progress progress("reading", "frames");
   ground.recordings = fly::read_recordings(options.over, map.zone, recorded, progress.updates());
@@ -175,7 +175,7 @@ fly::LevelFlight level_flight_of(const FlyOptions& options, const MapView& map, 
     throw InvalidInput("option-without-effect",
                        "--alt is for simulated flights that the library follows: leave it out");
   }
-  required_agl(map, ground.box, *options.alt_m);
+  required_agl_m(map, ground.box, *options.alt_m);
   return {map.terrain, *options.alt_m, options.camera.agl_m, options.tells_alt};
 }
 

@@ -11,7 +11,7 @@ std::optional<Altitude> altitude_of(const FrameTruth& frame, const Prior& prior,
   if (camera == nullptr) return std::nullopt;
   if (!frame.alt_m) return Altitude{std::nullopt, camera->agl_m};
   return said_of(frame.file.string(), [&] {
-    return Altitude{frame.alt_m, required_agl(map, region_of(map, prior).box, *frame.alt_m).middle_m()};
+    return Altitude{frame.alt_m, required_agl_m(map, region_of(map, prior).box, *frame.alt_m)};
   });
 }
 

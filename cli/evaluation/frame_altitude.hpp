@@ -10,8 +10,8 @@
 
 namespace roadfix::evaluation {
 
-/// As `fix` with that prior, by --agl or --alt; nullopt where the frame has no camera. Throws what required_agl() does,
-/// as InvalidInput with the file's name.
+/// As `fix` with that prior, by --agl or --alt; nullopt where the frame has no camera. Throws what required_agl_m()
+/// does, as InvalidInput with the file's name.
 std::optional<Altitude> altitude_of(const FrameTruth& frame, const Prior& prior, const MapView& map);
 
 }  // namespace roadfix::evaluation

@@ -73,8 +73,8 @@ HeightRange required_ground(const MapView& map, const GridBox& box) {
                                  map.id.name));
 }
 
-AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m) {
-  if (const auto agl = agl_above(map, box, above_sea_m)) return *agl;
+double required_agl_m(const MapView& map, const GridBox& box, double above_sea_m) {
+  if (const auto agl = agl_above(map, box, above_sea_m)) return agl->middle_m();
   throw InvalidInput("below-ground",
                      fmt::format("at {:.0f} m above the sea the UAV would be below the ground, which lies at {:.0f} m "
                                  "and more: check its height above the sea",

@@ -35,8 +35,9 @@ struct AglRange {
 std::optional<AglRange> agl_above(const MapView& map, const GridBox& box, double above_sea_m);
 /// Of the known ground of the box. Throws InvalidInput "terrain-missing" where the map knows no heights there.
 HeightRange required_ground(const MapView& map, const GridBox& box);
-/// As agl_above(). Throws the same, and InvalidInput "below-ground" where all of the ground is higher.
-AglRange required_agl(const MapView& map, const GridBox& box, double above_sea_m);
+/// The middle of agl_above(). Throws as required_ground(), and InvalidInput "below-ground" where all of the ground is
+/// higher.
+double required_agl_m(const MapView& map, const GridBox& box, double above_sea_m);
 
 /// `features`, as from `agl_m` above ground.
 FeatureMap seen_from(FeatureMap features, const Altitude& altitude, double agl_m);

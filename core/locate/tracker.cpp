@@ -83,7 +83,7 @@ StepResult Tracker::advance(const TrackerState& before, const StepInput& step, c
 
 double Tracker::agl_m(const TrackerState& state, double above_sea_m) const {
   const auto agl_m = mean_agl_m(map_, state.filter.particles, above_sea_m);
-  return agl_m ? *agl_m : required_agl(map_, start_.box, above_sea_m).middle_m();
+  return agl_m ? *agl_m : required_agl_m(map_, start_.box, above_sea_m);
 }
 
 std::vector<GeoPose> Tracker::particles(const TrackerState& state, std::size_t count) const {

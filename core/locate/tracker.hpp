@@ -82,7 +82,7 @@ class Tracker {
   /// asked to stop, and at the deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
   /// Height above ground of a vehicle at that height above the sea after the step that led to the state, or before the
-  /// first one: that above the ground of the particles, or of what the prior allows. Throws as required_agl().
+  /// first one: that above the ground of the particles, or of what the prior allows. Throws as required_agl_m().
   double agl_m(const TrackerState& state, double above_sea_m) const;
   /// At most `count` poses: every k-th particle, without those of no weight.
   std::vector<GeoPose> particles(const TrackerState& state, std::size_t count) const;

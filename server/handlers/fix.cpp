@@ -50,7 +50,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
   // Before the frame, which costs a turn among the searches.
   const PoseRegion region = search_region(map->view, prior, options);
   auto altitude = api::take_altitude(
-      content, [&](double above_sea_m) { return required_agl(map->view, region.box, above_sea_m).middle_m(); });
+      content, [&](double above_sea_m) { return required_agl_m(map->view, region.box, above_sea_m); });
   api::Features features = features_of(service, request, content, map->view);
   if (!altitude) altitude = api::altitude_in_file(features);
   options.calibration = service.calibration;

@@ -113,13 +113,13 @@ TEST_F(Altitudes, GiveNoFixWhereTheGroundOfThePlaceIsUnknown) {
 }
 
 TEST_F(Altitudes, AreRefusedBelowTheGroundAndWhereTheMapKnowsNone) {
-  const AglRange agl = required_agl(view_, view_.extent, 430.0);
+  const AglRange agl = agl_above(view_, view_.extent, 430.0).value();
   EXPECT_NEAR(agl.lowest_m, 170.0, 1.5);
   EXPECT_NEAR(agl.highest_m, 230.0, 1.5);
-  EXPECT_NEAR(agl.middle_m(), std::sqrt(170.0 * 230.0), 1.0);
-  EXPECT_EQ(code_of([&] { required_agl(view_, view_.extent, 150.0); }), "below-ground");
+  EXPECT_NEAR(required_agl_m(view_, view_.extent, 430.0), std::sqrt(170.0 * 230.0), 1.0);
+  EXPECT_EQ(code_of([&] { required_agl_m(view_, view_.extent, 150.0); }), "below-ground");
   view_.terrain = nullptr;
-  EXPECT_EQ(code_of([&] { required_agl(view_, view_.extent, 430.0); }), "terrain-missing");
+  EXPECT_EQ(code_of([&] { required_agl_m(view_, view_.extent, 430.0); }), "terrain-missing");
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST_F(Slopes, AreNoneWhereTheTimeIsOverBeforeThePlaceIsFoundAgain) {
 TEST_F(Slopes, AreLevelledInEachOfSeveralFramesFromItsOwnHeight) {
   const GridPose truth = pose_within(view_.extent, 450.0, random_);
   const Prior near = around(truth.position, 150.0);
-  const Altitude altitude{kAboveSeaM, required_agl(view_, search_region(view_, near, {}).box, kAboveSeaM).middle_m()};
+  const Altitude altitude{kAboveSeaM, required_agl_m(view_, search_region(view_, near, {}).box, kAboveSeaM)};
   const auto taken_at = [&](const BodyOffset& offset, double higher_m) -> PlacedFeatures {
     const GridPose pose = moved(truth, offset);
     FeatureMap seen = displaced(pose, higher_m);

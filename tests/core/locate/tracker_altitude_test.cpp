@@ -61,7 +61,7 @@ TEST_F(TrackFromAltitude, FindsNothingInTheSizeOfAnotherHeight) {
 TEST_F(TrackFromAltitude, ClaimsPlacesOverGroundWhoseHeightsAllowTooManySizesToSearch) {
   ground_.east_m = 360.0;
   view_.terrain = std::make_shared<const Terrain>(ground_.terrain());
-  ASSERT_GT(required_agl(view_, view_.extent, kAboveSeaM).scale_range(), kMaxScaleRange);
+  ASSERT_GT(agl_above(view_, view_.extent, kAboveSeaM).value().scale_range(), kMaxScaleRange);
   TrackSettings near = settings();
   near.prior.circle = GeoCircle{view_.zone.unproject(start_.position), 150.0};
   EXPECT_GE(claims_of(Tracker(view_, near), 30), 8);

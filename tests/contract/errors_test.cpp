@@ -25,12 +25,14 @@ using ::testing::Pair;
 
 const fs::path kRoot = ROADFIX_SOURCE_DIR;
 
-/// Literals that look like a code and are none: names of headers and what they hold, and a format of files.
-const std::set<std::string> kOtherWords{
-    "content-disposition", "content-encoding", "content-length", "content-type",
-    "if-none-match",       "last-event-id",    "no-cache",       "no-store",
-    "transfer-encoding",   "cross-site",       "sec-fetch-site", "x-forwarded-for",
-    "x-forwarded-proto",   "x-gzip",           "x-request-id",   "roadfix-calibration-2"};
+/// Literals that look like a code and are none.
+const std::set<std::string> kOtherWords{// headers and what they hold
+                                        "content-disposition", "content-encoding", "content-length", "content-type",
+                                        "if-none-match", "last-event-id", "no-cache", "no-store", "transfer-encoding",
+                                        "cross-site", "sec-fetch-site", "x-forwarded-for", "x-forwarded-proto",
+                                        "x-gzip", "x-request-id",
+                                        // a format of files, a unit
+                                        "roadfix-calibration-2", "us-ft"};
 
 std::string read(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);

@@ -33,6 +33,29 @@ TEST_F(Track, StartsBySearchAndFollowsTheFlight) {
   EXPECT_LT(state_.filter.particles.size(), 4000U);
 }
 
+/// Between two frames the belief grows by the errors of ten movements, to far more than the metres within which a frame
+/// fits: one of 120 m has to say enough to narrow it down again.
+TEST_F(Track, AcceptsMostSmallFramesThatComeEveryTenSteps) {
+  const Tracker tracker(view_, settings());
+  int frames = 0;
+  int accepted = 0;
+  for (const std::uint64_t seed : {1U, 2U}) {
+    Flight flight(map_, start_, seed);
+    flight.noise = {0.3, 0.3};
+    flight.side_cells = 100;
+    fly(tracker, flight, 3);
+    flight.side_cells = 60;
+    for (int i = 0; i < 150; ++i) {
+      const bool sees = i % 10 == 9;
+      const TrackEstimate estimate = advance(tracker, flight.step(sees));
+      frames += sees ? 1 : 0;
+      accepted += estimate.measurement == Measurement::kAccepted ? 1 : 0;
+    }
+    state_ = {};
+  }
+  EXPECT_GE(3 * accepted, 2 * frames);
+}
+
 /// That much of its weight is 300 m to the north of where it was, as if it had parted.
 TrackerState parted(TrackerState state, double share) {
   std::vector<double>& north_m = state.filter.particles.north_m;

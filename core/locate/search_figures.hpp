@@ -10,7 +10,7 @@
 namespace roadfix {
 
 /// Ground that counts as one independent sample: cells within about 15 m, the width of a wide road, err together. Only
-/// a unit, in which thresholds were chosen.
+/// a unit, in which thresholds were chosen, and the samples of tracks (MeasurementModel::most_samples).
 inline constexpr double kSampleM2 = 15.0 * 15.0;
 
 /// Least SearchFigures::other_roads_across of a place. One straight road looks like every other, and so does a junction

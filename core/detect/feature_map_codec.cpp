@@ -40,8 +40,17 @@ void refuse_coloured(const FramePixels& picture) {
                                  coloured));
 }
 
+/// 16 bits scaled linearly. Stretched as those of a frame are, doubtful roads would be certain ones, and the noise of
+/// empty ground a town.
+cv::Mat scaled_to_eight_bits(const cv::Mat& image) {
+  if (image.depth() != CV_16U) return image;
+  cv::Mat scaled;
+  image.convertTo(scaled, CV_8U, 255.0 / 65535.0);
+  return scaled;
+}
+
 CellArray cells_of(const cv::Mat& image) {
-  const FramePixels frame = frame_image(image);
+  const FramePixels frame = frame_image(scaled_to_eight_bits(image));
   refuse_coloured(frame);
   const cv::Mat grey = brightness_of(frame.pixels);
   CellArray cells(grey.cols, grey.rows);

@@ -43,6 +43,22 @@ TEST(FeatureMapCodec, SixteenBitsScaleLinearly) {
   EXPECT_EQ(cells.at(2, 0), kRoad);
 }
 
+TEST(FeatureMapCodec, SixteenBitsThatHoldNoCertainRoadStayDoubtful) {
+  cv::Mat deep(20, 20, CV_16UC1, cv::Scalar(655));
+  deep.row(7).setTo(19661);
+  const CellArray cells = decode_feature_map(encoded(".png", deep), kEnough).cells;
+  EXPECT_NEAR(probability(cells.at(3, 7)), 0.3, 0.005);
+  EXPECT_NEAR(probability(cells.at(3, 8)), 0.01, 0.005);
+}
+
+TEST(FeatureMapCodec, SixteenBitsWithAlphaBelowOneHalfAreUnobserved) {
+  cv::Mat deep(1, 2, CV_16UC4, cv::Scalar(30000, 30000, 30000, 0x8000));
+  deep.at<cv::Vec4w>(0, 1)[3] = 0x7FFF;
+  const CellArray cells = decode_feature_map(encoded(".png", deep), kEnough).cells;
+  EXPECT_TRUE(is_observed(cells.at(0, 0)));
+  EXPECT_FALSE(is_observed(cells.at(1, 0)));
+}
+
 TEST(FeatureMapCodec, RefusesAFrameThatWasTakenForAFeatureMap) {
   cv::Mat frame(40, 40, CV_8UC3, cv::Scalar(90, 120, 100));
   EXPECT_EQ(code_of([&] { decode_feature_map(encoded(".png", frame), kEnough); }), "feature-map-coloured");

@@ -12,7 +12,7 @@ void require_not_stopped(const std::stop_token& stop) {
 
 bool Deadline::over() const {
   require_not_stopped(stop_);
-  return end_ && std::chrono::steady_clock::now() >= *end_;
+  return time_is_over();
 }
 
 Deadline Deadline::after(double share) const {

@@ -20,6 +20,8 @@ class Deadline {
 
   /// Whether the time is over. Throws as require_not_stopped().
   bool over() const;
+  /// Whether the time is over or a stop was requested.
+  bool ended() const { return stop_.stop_requested() || time_is_over(); }
   /// A deadline after this share, in [0, 1], of the time that is left.
   Deadline after(double share) const;
   /// The same, or so long from now where that is sooner; nullopt = the same.
@@ -28,6 +30,8 @@ class Deadline {
   const std::stop_token& stop() const { return stop_; }
 
  private:
+  bool time_is_over() const { return end_ && std::chrono::steady_clock::now() >= *end_; }
+
   std::stop_token stop_;
   std::optional<std::chrono::steady_clock::time_point> end_;
 };

@@ -74,7 +74,7 @@ void max_of_windows(const std::vector<std::uint16_t>& cells, std::vector<std::ui
 
 }  // namespace
 
-BoundMap::BoundMap(const RoadGrid& grid)
+BoundMap::BoundMap(const RoadGrid& grid, const Deadline& deadline)
     : geometry_(grid.geometry),
       block_cols_(blocks(grid.cells.cols())),
       block_rows_(blocks(grid.cells.rows())),
@@ -92,7 +92,10 @@ BoundMap::BoundMap(const RoadGrid& grid)
   const CellArray two = pooled_once(above, 1);
   pooled2_ = MapPlane(two);
   pooled4_ = MapPlane(pooled_once(two, 2));
-  for (int i = 0; i < kLineDirections; ++i) fill_piece_plane(i, line_stencil(i), above);
+  for (int i = 0; i < kLineDirections; ++i) {
+    if (deadline.ended()) throw TimeIsOver();
+    fill_piece_plane(i, line_stencil(i), above);
+  }
   fill_piece_plane(kCellPlane, {{0, 0}}, above);
   fill_observed(grid.cells);
   fill_sums(grid.cells);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "core/grid/road_grid.hpp"
+#include "core/match/deadline.hpp"
 #include "core/match/map_plane.hpp"
 #include "core/proof/line_stencil.hpp"
 
@@ -32,8 +33,12 @@ class BoundMap {
   /// Blocks of a row are read so many at a time.
   static constexpr int kRun = 64;
 
-  /// Bounds hold for positions from which a footprint stays kBorder cells or more within the grid.
-  explicit BoundMap(const RoadGrid& grid);
+  /// Thrown where the map was not done at its deadline.
+  struct TimeIsOver {};
+
+  /// Bounds hold for positions from which a footprint stays kBorder cells or more within the grid. Throws TimeIsOver
+  /// some tenths of a second after the deadline or a stop at the latest.
+  explicit BoundMap(const RoadGrid& grid, const Deadline& deadline = {});
   static constexpr int kBorder = 16;
 
   const GridGeometry& geometry() const { return geometry_; }

@@ -1,6 +1,7 @@
 #include "core/search/search_proof.hpp"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "core/proof/branch_and_bound.hpp"
@@ -24,6 +25,21 @@ BoundedSearch bounded_search(const SearchLevels& levels, const Level& level, con
   return bounded;
 }
 
+/// The map of the level, nullptr where time runs out.
+std::shared_ptr<const BoundMap> map_before(const Deadline& deadline, const GridGeometry& window, const Level& level,
+                                           int halvings, const SearchOptions& options) {
+  while (!deadline.over()) {
+    try {
+      // The halvings are part of the key since searches differ in the finest cells that these are means of.
+      return get_or_build<BoundMap>(options.cache, window, {halvings},
+                                    [&] { return BoundMap(level.read(window), deadline); });
+    } catch (const BoundMap::TimeIsOver&) {
+      // Perhaps that of another search, which was building it for both.
+    }
+  }
+  return nullptr;
+}
+
 }  // namespace
 
 SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std::vector<LatticePose>& candidates) {
@@ -33,12 +49,10 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
       level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), bounded.known, 1.0, false, 0.0};
   // Following the best pose to the finest cells needs the rest of the time.
   const Deadline deadline = options.deadline.after(0.5).within(options.proof_time);
-  if (deadline.over()) return proof;
   const int largest = level.scales.reach();
   const GridGeometry window = bounded.positions.padded(level.reach(largest) + BoundMap::kBorder);
-  // The halvings are part of the key since searches differ in the finest cells that these are means of.
-  const auto map = get_or_build<BoundMap>(options.cache, window, {levels.halvings(levels.proof_level())},
-                                          [&] { return BoundMap(level.read(window)); });
+  const auto map = map_before(deadline, window, level, levels.halvings(levels.proof_level()), options);
+  if (!map) return proof;
   bounded.map = map.get();
   proof.bound = 0.0;
   proof.complete = true;

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <memory>
+#include <thread>
 
 #include "core/grid/resample.hpp"
 #include "core/search/search.hpp"
@@ -55,6 +56,27 @@ TEST(SearchProof, ReadsNoMapWhenTimeIsOver) {
   EXPECT_FALSE(found.proof->complete);
   EXPECT_EQ(found.proof->bound, 1.0);
   EXPECT_EQ(found.proof->excluded_share, 0.0);
+}
+
+// On a map of 500 km2 its planes take seconds, and what was left of the time was theirs.
+TEST(SearchProof, MakesNothingOfTheMapWhenTimeEndsAsItIsRead) {
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 300, 300});
+  const FeatureMap seen = cut_out(map, {map.geometry.box().centre(), Angle()}, 150, 150, 2.0);
+  SearchOptions options;
+  options.cache = std::make_shared<SearchCache>(std::size_t{1} << 30);
+  const PoseRegion region = all_poses_in(map.geometry.box());
+  search(reader_of(map), 2.0, seen, region, options);
+  const std::size_t kept = options.cache->bytes();
+  options.proof_time = std::chrono::milliseconds(500);
+  const auto slowly = [&](const GridGeometry& window) {
+    if (window.cell_m == 4.0) std::this_thread::sleep_for(*options.proof_time);
+    return reader_of(map)(window);
+  };
+  const SearchResult found = search(slowly, 2.0, seen, region, options);
+  EXPECT_EQ(options.cache->bytes(), kept);
+  EXPECT_FALSE(found.proof->complete);
+  EXPECT_EQ(found.proof->bound, 1.0);
+  EXPECT_TRUE(found.complete());
 }
 
 TEST(SearchProof, IsOverAllScalesToo) {

@@ -15,7 +15,7 @@ from history import Unknown  # noqa: E402
 from vehicle import Vehicle  # noqa: E402
 
 
-def hud(airspeed, alt=0.0):
+def hud(airspeed, alt=1e-4):
     return {"airspeed": airspeed, "alt": alt}
 
 
@@ -157,6 +157,16 @@ class Flights(unittest.TestCase):
         move(vehicle, 8.0)
         self.assertIsNone(vehicle.alt_m(vehicle.heard), "heard long ago")
 
+    def test_are_as_high_above_the_sea_as_nobody_knows_before_the_autopilot_has_an_origin(self):
+        vehicle = Vehicle()
+        with said() as words:
+            for came in (1.0, 1.2):
+                vehicle.hear("VFR_HUD", hud(20.0, 0.0), came)
+            self.assertIsNone(vehicle.alt_m(vehicle.heard), "an ArduPilot copter without one tells 0, however high")
+            vehicle.hear("VFR_HUD", hud(20.0, 705.25), 1.4)
+            self.assertEqual(vehicle.alt_m(vehicle.heard), 705.25)
+        self.assertEqual(words.getvalue().count("no origin yet (SET_GPS_GLOBAL_ORIGIN)"), 1)
+
     def test_have_moved_nobody_knows_where_while_nothing_was_heard(self):
         vehicle = Vehicle()
         for tenth in range(100, 360):
@@ -286,7 +296,7 @@ class Flights(unittest.TestCase):
 class FlightsByAir(unittest.TestCase):
     def test_are_as_fast_as_the_thin_air_of_their_height_lets_them(self):
         # ISO 2533: densities of 1.225, 1.0065 and 0.4127 kg/m^3
-        for alt_m, true in ((0.0, 20.0), (2000.0, 22.064), (10_000.0, 34.457)):
+        for alt_m, true in ((1e-4, 20.0), (2000.0, 22.064), (10_000.0, 34.457)):
             vehicle = Vehicle(by_air=True)
             for tenth in range(51, 63):
                 turn(vehicle, 0.1 * tenth, yaw=0.5 * math.pi)
@@ -304,7 +314,7 @@ class FlightsByAir(unittest.TestCase):
         self.assertAlmostEqual(vehicle.seen_at(6.1)[0][0], 22.06, places=2)
 
     def test_are_as_fast_as_nobody_knows_where_their_height_or_airspeed_is_not_known(self):
-        for fields in (hud(20.0, alt=math.nan), hud(20.0, alt=11_001.0), hud(math.nan), hud(math.inf)):
+        for fields in (hud(20.0, alt=math.nan), hud(20.0, alt=0.0), hud(20.0, alt=11_001.0), hud(math.nan), hud(math.inf)):
             vehicle = Vehicle(by_air=True)
             for tenth in range(50, 62):
                 turn(vehicle, 0.1 * tenth)

@@ -39,7 +39,8 @@ struct ScanResult {
 };
 
 /// `map` extends its reach() beyond the positions on every side; its reach is at least the footprint's. Scores are
-/// accurate to some percent: means and spreads under the footprint come from a coarser grid. At the deadline it stops
+/// accurate to some percent: means and spreads under the footprint come from a coarser grid. On bare ground beside
+/// roads, and under narrow footprints, they may be several times too high, beyond 1. At the deadline it stops
 /// and returns what it has; throws Interrupted if asked to stop.
 ScanResult coarse_scan(const ScanMap& map, const FeatureMap& features, const ScanRequest& request,
                        const Deadline& deadline);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/search/refine.hpp"
 #include "core/search/score_spread.hpp"
 
 namespace roadfix {
@@ -115,7 +116,20 @@ SearchScan::Maxima SearchScan::maxima() const {
     }
   }
   all.share /= coarse.scales.count();
+  correct(all.inside);
+  correct(all.outside);
   return all;
+}
+
+/// No score exceeds 1. Where one does, the means of the scan do not hold: on bare ground beside a road, and of narrow
+/// footprints. Many such poses would take the places of all others.
+void SearchScan::correct(std::vector<LatticePose>& poses) const {
+  constexpr double kHighestScore = 1.0;
+  const auto first =
+      std::ranges::stable_partition(poses, [](const LatticePose& pose) { return pose.score <= kHighestScore; }).begin();
+  std::vector<LatticePose> wrong(first, poses.end());
+  if (wrong.empty() || !refine(levels_.coarse(), {.cells = 1, .bins = 0}, options_.deadline, wrong)) return;
+  std::ranges::copy(wrong, first);
 }
 
 Scanned SearchScan::run() const {

@@ -47,6 +47,8 @@ class SearchScan {
   ScanRequest request() const;
   std::shared_ptr<const ScanMap> map_below(const GridGeometry& positions) const;
   Maxima maxima() const;
+  /// Replaces scores that are not possible by exact ones.
+  void correct(std::vector<LatticePose>& poses) const;
   std::optional<double> finer_spread() const;
 
   const SearchLevels& levels_;

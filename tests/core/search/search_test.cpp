@@ -66,6 +66,19 @@ TEST(Search, FindsAWindowOfKilometresInCoarserCells) {
   EXPECT_LT(angular_distance(found.modes[0].pose.heading, truth.heading).degrees(), 0.2);
 }
 
+// The scan knows means under narrow footprints so roughly that hundreds of its scores exceed 1, and true ones do not.
+TEST(Search, FindsNarrowWindows) {
+  for (const std::uint64_t seed : {2U, 11U, 25U}) {
+    const RoadGrid map = street_map(seed, town(900, 900));
+    std::mt19937_64 random(seed);
+    const PoseRegion region = all_poses_in(map.geometry.box());
+    const GridPose truth = pose_within(region.box, 200.0, random);
+    const SearchResult found = search(reader_of(map), 2.0, cut_out(map, truth, 120, 14, 2.0), region, {});
+    ASSERT_FALSE(found.modes.empty());
+    EXPECT_LT(distance_m(found.modes[0].pose.position, truth.position), 2.0) << seed;
+  }
+}
+
 TEST(Search, GivesEachPeakOneMode) {
   const RoadGrid map = street_map(9, town(900, 900));
   std::mt19937_64 random(10);

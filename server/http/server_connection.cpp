@@ -5,7 +5,6 @@
 #include <string>
 #include <string_view>
 
-#include "server/http/errors.hpp"
 #include "server/http/server_impl.hpp"
 
 namespace roadfix::http {
@@ -20,6 +19,19 @@ constexpr auto kFirstByteGrace = 1s;
 /// Where there is no memory for an answer of our own.
 constexpr std::string_view kUnavailable =
     "HTTP/1.1 503 Service Unavailable\r\nRetry-After: 5\r\nConnection: close\r\nContent-Length: 0\r\n\r\n";
+
+const char* phrase_of(int status) {
+  switch (status) {
+    case 408:
+      return "Request Timeout";
+    case 414:
+      return "URI Too Long";
+    case 503:
+      return "Service Unavailable";
+    default:
+      return "Internal Server Error";
+  }
+}
 
 }  // namespace
 
@@ -60,16 +72,9 @@ bool Server::Impl::wait_for_request(Connection& connection, bool first) const {
 /// By others that wait, or by the end of the service: who sends slowly is waited for no longer.
 bool Server::Impl::threads_are_wanted() const { return stopping_ || pool_->waiting() > 0; }
 
-void Server::Impl::refuse_connection(Connection& connection) const {
-  Response response = on_error_(std::make_exception_ptr(Busy("too many connections wait; try again", 1s)), {});
-  response.headers.emplace_back("Connection", "close");
-  write_directly(connection, response);
-}
-
 /// What is not answered through cpp-httplib: no request was read, or it gave up.
 void Server::Impl::write_directly(Connection& connection, const Response& response) const {
-  std::string text = fmt::format("HTTP/1.1 {} {}\r\n", response.status,
-                                 response.status == 503 ? "Service Unavailable" : "Internal Server Error");
+  std::string text = fmt::format("HTTP/1.1 {} {}\r\n", response.status, phrase_of(response.status));
   for (const auto& [name, value] : response.headers) text += fmt::format("{}: {}\r\n", name, value);
   text += fmt::format("Content-Type: {}\r\nContent-Length: {}\r\n\r\n{}", response.content_type, response.body.size(),
                       response.body);

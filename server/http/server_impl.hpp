@@ -40,13 +40,14 @@ class Server::Impl : public httplib::Server {
   void serve_connection(Connection& connection);
   bool wait_for_request(Connection& connection, bool first) const;
   bool threads_are_wanted() const;
-  void refuse_connection(Connection& connection) const;
   void write_directly(Connection& connection, const Response& response) const;
 
   // server_request.cpp
   void set_callbacks();
   bool read_and_answer(auto& connection, bool last, bool& closed_by_client, const auto& take_head);
   bool serve_request(Connection& connection, bool last);
+  void refuse_connection(Connection& connection);
+  void answer_for_library(Exchange& exchange);
   void end_request(Exchange& exchange, std::exception_ptr thrown);
   void identify(Exchange& exchange) const;
   HandlerResponse before_body(const httplib::Request& head, httplib::Response& out);

@@ -81,6 +81,7 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
   try {
     written =
         read_and_answer(connection, last, closed_by_client, [&](httplib::Request& head) { take_over(head, exchange); });
+    if (!connection.has_written()) answer_for_library(exchange);
   } catch (...) {
     end_request(exchange, std::current_exception());
   }
@@ -89,7 +90,27 @@ bool Server::Impl::serve_request(Connection& connection, bool last) {
   return written && !last && !closed_by_client && !exchange.asked_to_close && !exchange.must_close;
 }
 
-/// By what was thrown outside of handlers: mostly that there is no memory.
+/// Before anything of a request is read, since no thread is free for it.
+void Server::Impl::refuse_connection(Connection& connection) {
+  Exchange exchange(connection);
+  const Passing passing(exchange);
+  end_request(exchange, std::make_exception_ptr(Busy("too many connections wait; try again", std::chrono::seconds(1))));
+}
+
+/// cpp-httplib closes without a word where the request line alone is too long, or does not come in time.
+void Server::Impl::answer_for_library(Exchange& exchange) {
+  switch (exchange.connection->failure()) {
+    case Connection::Failure::kHeadTooLarge:
+      return end_request(exchange, std::make_exception_ptr(url_too_long()));
+    case Connection::Failure::kTimeout:
+    case Connection::Failure::kLetGo:
+      return end_request(exchange, failure_of_head(exchange, settings_.connection.head_bytes));
+    default:
+      return;
+  }
+}
+
+/// By what was thrown outside of handlers, mostly that there is no memory, or what the library says nothing about.
 void Server::Impl::end_request(Exchange& exchange, std::exception_ptr thrown) {
   identify(exchange);
   exchange.must_close = true;

@@ -31,7 +31,9 @@ class HttpServerTimes : public testing::HttpServerTest {
 TEST_F(HttpServerTimes, EndsAHeadThatComesTooSlowly) {
   settings_.connection.head = 100ms;
   const auto server = started();
-  EXPECT_THAT(raw("GET /echo HTTP/1.1\r\nHo"), ::testing::HasSubstr("request-timeout"));
+  for (const char* begun : {"GET /echo HTTP/1.1\r\nHo", "GET /ec"}) {
+    EXPECT_THAT(raw(begun), ::testing::HasSubstr("request-timeout")) << begun;
+  }
 }
 
 TEST_F(HttpServerTimes, EndsABodyThatComesTooSlowly) {
@@ -230,6 +232,8 @@ TEST_F(HttpServerTimes, TellsConnectionsBeyondItsQueueToComeBack) {
   const std::string answer = raw("");
   EXPECT_THAT(answer, ::testing::StartsWith("HTTP/1.1 503"));
   EXPECT_THAT(answer, ::testing::HasSubstr("Retry-After: 1"));
+  EXPECT_THAT(answer, ::testing::HasSubstr("X-Request-Id: "));
+  wait_for_figure("roadfix_requests_total{method=\"-\",route=\"-\",status=\"503\"} 1\n");
   go_ = true;
 }
 

@@ -85,6 +85,15 @@ TEST(Convergence, WantsEveryConditionOfAClaim) {
   for (const Broken& by : kOfSearches) expect_taken_back(claimed, by);
 }
 
+TEST(Convergence, IsExplainedByAllThatMayBeBehindIt) {
+  const auto says = [](Unclaimed why, const std::string& words) {
+    return std::string(explanation_of(why)).find(words) != std::string::npos;
+  };
+  EXPECT_TRUE(says(Unclaimed::kFrameRejected, "how the camera is turned against the nose"));
+  EXPECT_TRUE(says(Unclaimed::kFrameRepeated, "if the vehicle hovers, its odometry drifts"));
+  EXPECT_TRUE(says(Unclaimed::kOthersNotRuledOut, "searches end for lack of time"));
+}
+
 TEST(Convergence, IsExplainedByTheFirstConditionThatFails) {
   const std::vector<Unclaimed> order{Unclaimed::kFrameRepeated,     Unclaimed::kFrameRejected,
                                      Unclaimed::kSeveralPlaces,     Unclaimed::kPlaceTooWide,

@@ -38,7 +38,7 @@ class Heights:
         self._above_takeoff = Told()
         self._above_sea = {"ALTITUDE": Told(), "VFR_HUD": Told()}  # the better one first
         self._knew_ground = None
-        self._is_zero_told = False
+        self._said = set()  # once
 
     def tell_above_ground(self, height_m, came):
         """One that is NaN or not above 0 is not known."""
@@ -61,9 +61,17 @@ class Heights:
         """As one of two messages has it. What no vehicle can be at is not known, and as little is 0 to the last digit,
         which an ArduPilot without an origin tells."""
         if height_m == 0.0:
-            self._say_that_it_is_zero(message)
+            self._say_once(f"{message} tells a height above the sea of 0 to the last digit, which counts as not known: "
+                           "the autopilot has no origin yet (SET_GPS_GLOBAL_ORIGIN)")
         is_known = height_m != 0.0 and MSL_M[0] <= height_m <= MSL_M[1]
         self._above_sea[message].tell(height_m if is_known else math.nan, came)
+
+    def say_of_pressure(self, height_m, by_pressure_m):
+        """Of a height above the sea and that of the barometer alone, which PX4 tells for it while it has no origin."""
+        if height_m == by_pressure_m:
+            self._say_once("the height above the sea is that of the barometer alone, 8 m off for each hPa by which the "
+                           "air pressure is not what the autopilot takes it for (SENS_BARO_QNH): it has no origin yet "
+                           "(SET_GPS_GLOBAL_ORIGIN)")
 
     def agl_m(self, when):
         """None where nothing is known."""
@@ -80,11 +88,10 @@ class Heights:
         return next((height_m for height_m in (told.at(when) for told in self._above_sea.values())
                      if height_m is not None), None)
 
-    def _say_that_it_is_zero(self, message):
-        if not self._is_zero_told:
-            self._is_zero_told = True
-            print(f"{message} tells a height above the sea of 0 to the last digit, which counts as not known: the "
-                  "autopilot has no origin yet (SET_GPS_GLOBAL_ORIGIN)", file=sys.stderr)
+    def _say_once(self, words):
+        if words not in self._said:
+            self._said.add(words)
+            print(words, file=sys.stderr)
 
     def _say(self, knows_ground):
         """Where it is not as before."""

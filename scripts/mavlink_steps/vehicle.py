@@ -51,6 +51,7 @@ class Vehicle:
         elif name == "ALTITUDE":
             self._heights.tell_above_ground(fields["bottom_clearance"], came)
             self._heights.tell_above_sea(name, fields["altitude_amsl"], came)
+            self._heights.say_of_pressure(fields["altitude_amsl"], fields["altitude_monotonic"])
 
     def _hear_at(self, when, name, fields, came):
         if name == "ATTITUDE":

@@ -19,8 +19,8 @@ def hud(airspeed, alt=1e-4):
     return {"airspeed": airspeed, "alt": alt}
 
 
-def altitude(above_ground_m, above_sea_m=0.0):
-    return {"bottom_clearance": above_ground_m, "altitude_amsl": above_sea_m}
+def altitude(above_ground_m, above_sea_m=0.0, by_pressure_m=math.nan):
+    return {"bottom_clearance": above_ground_m, "altitude_amsl": above_sea_m, "altitude_monotonic": by_pressure_m}
 
 
 def turn(vehicle, came, roll=0.0, pitch=0.0, yaw=0.0):
@@ -166,6 +166,15 @@ class Flights(unittest.TestCase):
             vehicle.hear("VFR_HUD", hud(20.0, 705.25), 1.4)
             self.assertEqual(vehicle.alt_m(vehicle.heard), 705.25)
         self.assertEqual(words.getvalue().count("no origin yet (SET_GPS_GLOBAL_ORIGIN)"), 1)
+
+    def test_are_said_to_be_as_high_as_the_barometer_alone_tells_before_the_autopilot_has_an_origin(self):
+        for by_pressure_m, is_said in (((705.25, 706.5), 1), ((705.5, 706.75), 0), ((math.nan, math.nan), 0)):
+            vehicle = Vehicle()
+            with said() as words:
+                for came, above_sea_m, barometer_m in zip((1.0, 2.0), (705.25, 706.5), by_pressure_m):
+                    vehicle.hear("ALTITUDE", altitude(80.0, above_sea_m, barometer_m), came)
+            self.assertEqual(words.getvalue().count("barometer alone"), is_said, by_pressure_m)
+            self.assertEqual(vehicle.alt_m(vehicle.heard), 706.5)
 
     def test_have_moved_nobody_knows_where_while_nothing_was_heard(self):
         vehicle = Vehicle()

@@ -10,6 +10,7 @@ from history import KEPT, Unknown, around, between
 
 LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
 CARRIED_ON_S = 1.0     # by the last velocity
+VELOCITY_HORIZ = 2     # of the flags of ESTIMATOR_STATUS
 ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
 
 
@@ -30,6 +31,7 @@ class Vehicle:
         self._places = collections.deque(maxlen=KEPT)     # time, north, east, velocity to the north and to the east
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
         self._holes = []  # when each ended
+        self._knows_velocity = True  # the estimator, as it says; PX4 tells one near 0 while nothing aids it
         self.heard = -math.inf
 
     def hear(self, name, fields, came):
@@ -40,6 +42,8 @@ class Vehicle:
                 self._hear_at(when, name, fields, came)
         elif name == "GPS_RAW_INT":
             self._gps.tell_fix(fields["fix_type"], 1e-7 * fields["lat"], 1e-7 * fields["lon"], came)
+        elif name == "ESTIMATOR_STATUS":
+            self._knows_velocity = bool(fields["flags"] & VELOCITY_HORIZ)
         elif name == "HOME_POSITION":
             self._heights.tell_takeoff(-fields["z"])
         elif name == "VFR_HUD":
@@ -59,7 +63,7 @@ class Vehicle:
         elif name == "LOCAL_POSITION_NED":
             if math.isfinite(fields["z"]):
                 self._heights.tell_above_origin(-fields["z"], came)
-            if not self._by_air:
+            if not self._by_air and self._knows_velocity:
                 self._move((fields["vx"], fields["vy"]), when)
         elif name == "GLOBAL_POSITION_INT":
             self._heights.tell_above_takeoff(1e-3 * fields["relative_alt"], came)
@@ -82,7 +86,9 @@ class Vehicle:
     @property
     def velocities(self):
         """What tells them."""
-        return "VFR_HUD with a height above the sea" if self._by_air else "LOCAL_POSITION_NED"
+        if self._by_air:
+            return "VFR_HUD with a height above the sea"
+        return "LOCAL_POSITION_NED" + ("" if self._knows_velocity else " that counts by ESTIMATOR_STATUS")
 
     def holes_before(self, when):
         """How many there were in the velocities: the movement between a place before one and a place after it is not

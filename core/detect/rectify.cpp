@@ -14,6 +14,7 @@
 namespace roadfix {
 namespace {
 
+constexpr int kLongestSidePx = 32'766;  // OpenCV warps no longer ones
 constexpr int kStripRows = 256;  // rectified at a time: the table of source positions takes more memory than pixels do
 
 const cv::Point2d kNowhere(-1e4, -1e4);  // outside any frame, even after it is scaled down
@@ -52,13 +53,13 @@ cv::Rect2d seen_ground(const FrameCamera& camera, const Lens& lens, cv::Size siz
 cv::Size size_of(const cv::Rect2d& box, double gsd_m, double max_pixels) {
   const double cols = std::ceil(box.width / gsd_m);
   const double rows = std::ceil(box.height / gsd_m);
-  if (!(cols * rows <= max_pixels)) {
+  if (!(cols * rows <= max_pixels && std::max(cols, rows) <= kLongestSidePx)) {
     throw LimitExceeded(
         "ground-too-large",
         fmt::format(
-            "frame: it shows {:.0f} x {:.0f} m, {:.0f} pixels at {} m; at most {:.0f} are allowed: use a coarser "
-            "ground sample distance or a shorter range",
-            box.width, box.height, cols * rows, gsd_m, max_pixels));
+            "frame: it shows {:.0f} x {:.0f} m, {:.0f} x {:.0f} pixels at {} m; at most {:.0f} are allowed, and "
+            "{} along a side: use a coarser ground sample distance or a shorter range",
+            box.width, box.height, cols, rows, gsd_m, max_pixels, kLongestSidePx));
   }
   return {std::max(1, static_cast<int>(cols)), std::max(1, static_cast<int>(rows))};
 }
@@ -108,6 +109,14 @@ GroundImage averaged(const cv::Mat& frame, const cv::Mat& observed, double finer
   return at_gsd({frame, seen, 1.0}, std::max(1.0, std::floor(finer)));
 }
 
+void require_short_sides(cv::Size frame) {
+  if (std::max(frame.width, frame.height) <= kLongestSidePx) return;
+  throw LimitExceeded("image-too-large",
+                      fmt::format("frame: {} x {} pixels cannot be rectified, with more than {} along a side: send it "
+                                  "smaller, or a part of it",
+                                  frame.width, frame.height, kLongestSidePx));
+}
+
 /// Fills these rows of the ground from `frame`, which is `scale` times as large as the original.
 void warp_rows(const GroundImage& frame, cv::Point2d scale, const GroundToFrame& placed, cv::Range rows,
                GroundImage& ground) {
@@ -138,6 +147,7 @@ GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const Fr
   const cv::Size size = size_of(box, gsd_m, max_pixels);
   const double axis_gsd_m = camera.agl_m / level_from_camera(camera)(2, 2) / lens.focal_px();
   const GroundImage source = averaged(frame, frame_observed, gsd_m / axis_gsd_m);
+  require_short_sides(source.pixels.size());
   const cv::Point2d scale(source.pixels.cols / static_cast<double>(frame.cols),
                           source.pixels.rows / static_cast<double>(frame.rows));
   const GroundToFrame placed(camera, lens, box.tl(), gsd_m, max_range_m);

@@ -229,5 +229,18 @@ TEST(Rectify, RefusesWhatCannotBe) {
   EXPECT_EQ(testing::code_of([&] { rectify(frame, {}, level_camera(), {0.001, 500, 1e7}); }), "ground-too-large");
 }
 
+TEST(Rectify, RefusesWhatIsTooLongToBeWarped) {
+  const cv::Mat frame(4, 33'000, CV_8UC1, cv::Scalar(90));
+  FrameCamera camera = level_camera();
+  camera.horizontal_fov = Angle::degrees(100);
+  camera.agl_m = 5000;
+  const auto code_at = [&](const cv::Mat& picture, double gsd_m) {
+    return testing::code_of([&] { rectify(picture, {}, camera, {gsd_m, 15'000, 1e9}); });
+  };
+  EXPECT_EQ(code_at(frame, 0.5), "image-too-large");
+  EXPECT_EQ(code_at(frame, 2.0), "no error") << "averaged first, it is shorter";
+  EXPECT_EQ(code_at(frame.colRange(0, 3000), 0.3), "ground-too-large");
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -6,10 +6,11 @@ a folder: a line of JSON for each picture.
   python3 scripts/mavlink_steps --listen 14551 --watch frames --every 1 --camera level |
     python3 scripts/ground_station --map city --frame fov_deg=78 --live
 
-Movements are the sum of velocities: of LOCAL_POSITION_NED (unless PX4's ESTIMATOR_STATUS says that it knows none), or
-with --by-air of airspeed and heading (VFR_HUD, ATTITUDE; give the track wind_sigma_m_s). Heights are those above ground
-of ALTITUDE (PX4) or TERRAIN_REPORT (ArduPilot), else above the take-off. That above the sea, which goes to the autopilot
-with each position, is that of ALTITUDE or VFR_HUD. A picture was taken when its file was last written, less --delay.
+Movements are the sum of velocities: of LOCAL_POSITION_NED, unless ESTIMATOR_STATUS (PX4) or EKF_STATUS_REPORT
+(ArduPilot) says that they do not count, or with --by-air of airspeed and heading (VFR_HUD, ATTITUDE; give the track
+wind_sigma_m_s). Heights are those above ground of ALTITUDE (PX4) or TERRAIN_REPORT (ArduPilot), else above the take-off.
+That above the sea, which goes to the autopilot with each position, is that of ALTITUDE or VFR_HUD. A picture was taken
+when its file was last written, less --delay.
 
 With --csv the flight of a vehicle that has GPS becomes a table of its pictures with their places, those of
 GLOBAL_POSITION_INT while GPS_RAW_INT tells a 3D fix. Send the autopilot no positions meanwhile: they would be its own.

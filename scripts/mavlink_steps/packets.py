@@ -1,5 +1,5 @@
 """MAVLink 1 and 2 packets (https://mavlink.io/en/guide/serialization.html) and the messages that tell how a vehicle
-moves and what it answers, by common.xml."""
+moves and what it answers, by common.xml and ardupilotmega.xml."""
 import struct
 from typing import NamedTuple
 
@@ -14,6 +14,8 @@ MESSAGES = {
     136: ("TERRAIN_REPORT", 1, "<iiffH", ("lat", "lon", "terrain_height", "current_height", "spacing")),
     141: ("ALTITUDE", 47, "<Q6f", ("time_usec", "altitude_monotonic", "altitude_amsl", "altitude_local",
                                    "altitude_relative", "altitude_terrain", "bottom_clearance")),
+    193: ("EKF_STATUS_REPORT", 71, "<5fH", ("velocity_variance", "pos_horiz_variance", "pos_vert_variance",
+                                            "compass_variance", "terrain_alt_variance", "flags")),
     230: ("ESTIMATOR_STATUS", 163, "<Q8fH", ("time_usec", "vel_ratio", "pos_horiz_ratio", "pos_vert_ratio", "mag_ratio",
                                              "hagl_ratio", "tas_ratio", "pos_horiz_accuracy", "pos_vert_accuracy",
                                              "flags")),

@@ -10,7 +10,8 @@ from history import KEPT, Unknown, around, between
 
 LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
 CARRIED_ON_S = 1.0     # by the last velocity
-VELOCITY_HORIZ = 2     # of the flags of ESTIMATOR_STATUS
+STATUS = ("ESTIMATOR_STATUS", "EKF_STATUS_REPORT")  # of the estimator of PX4, and of ArduPilot
+VELOCITY_HORIZ = 2     # of their flags
 ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
 
 
@@ -31,7 +32,7 @@ class Vehicle:
         self._places = collections.deque(maxlen=KEPT)     # time, north, east, velocity to the north and to the east
         self._attitudes = collections.deque(maxlen=KEPT)  # time, roll, pitch, yaw that goes on beyond 360 degrees
         self._holes = []  # when each ended
-        self._knows_velocity = True  # the estimator, as it says; PX4 tells one near 0 while nothing aids it
+        self._knows_velocity = True  # the estimator, as it says: some tell one near 0 while nothing aids it
         self.heard = -math.inf
 
     def hear(self, name, fields, came):
@@ -42,7 +43,7 @@ class Vehicle:
                 self._hear_at(when, name, fields, came)
         elif name == "GPS_RAW_INT":
             self._gps.tell_fix(fields["fix_type"], 1e-7 * fields["lat"], 1e-7 * fields["lon"], came)
-        elif name == "ESTIMATOR_STATUS":
+        elif name in STATUS:
             self._knows_velocity = bool(fields["flags"] & VELOCITY_HORIZ)
         elif name == "HOME_POSITION":
             self._heights.tell_takeoff(-fields["z"])
@@ -88,7 +89,7 @@ class Vehicle:
         """What tells them."""
         if self._by_air:
             return "VFR_HUD with a height above the sea"
-        return "LOCAL_POSITION_NED" + ("" if self._knows_velocity else " that counts by ESTIMATOR_STATUS")
+        return "LOCAL_POSITION_NED" + ("" if self._knows_velocity else f" that counts by {' or '.join(STATUS)}")
 
     def holes_before(self, when):
         """How many there were in the velocities: the movement between a place before one and a place after it is not

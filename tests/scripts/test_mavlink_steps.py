@@ -46,6 +46,9 @@ OTHERS = {
     "GPS_RAW_INT": (
         bytes.fromhex("fd2c00000a070118000015cd5b07000000007b3582162d0821b7fad007007900c800e2042823030c603d0800dc050000"
                       "c40900002c01ca19"), {"lat": 377632123, "lon": -1222571987, "fix_type": 3}),
+    "EKF_STATUS_REPORT": (
+        bytes.fromhex("fd1a0000090701c100000000003f0000803e0000003e0000403f00000000a5000000003f232f"),
+        {"velocity_variance": 0.5, "compass_variance": 0.75, "flags": 1 | 4 | 32 | 128}),
     "ESTIMATOR_STATUS": (
         bytes.fromhex("fd290000090701e6000015cd5b07000000000000003f0000803e0000003e0000403f00000000000000000000c03f0000"
                       "2040a54a70"), {"time_usec": 123456789, "pos_vert_accuracy": 2.5, "flags": 1 | 4 | 32 | 128}),

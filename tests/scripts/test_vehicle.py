@@ -293,18 +293,18 @@ class Flights(unittest.TestCase):
 
 
     def test_have_moved_nobody_knows_where_while_the_estimator_knows_no_velocity(self):
-        vehicle = Vehicle()
-        for tenth in range(10, 200):
-            came = 0.1 * tenth
-            if tenth in (60, 120):  # PX4 loses what aids it, and gets it back
-                vehicle.hear("ESTIMATOR_STATUS", {"flags": 2 if tenth == 120 else 0x83 & ~2}, came)
-            aided = not 60 <= tenth < 120
-            move(vehicle, came, north=10.0 if aided else 0.0)
-            turn(vehicle, came)
-        for when, is_known in ((5.0, True), (6.5, True), (7.5, False), (11.5, False), (12.5, True)):
-            self.assertEqual(vehicle.seen_at(when)[0] is not None, is_known, when)
-        self.assertAlmostEqual(vehicle.seen_at(6.5)[0][0] - vehicle.seen_at(5.0)[0][0], 15.0)
-        self.assertEqual((vehicle.holes_before(11.9), vehicle.holes_before(12.1)), (0, 1))
+        for status in ("ESTIMATOR_STATUS", "EKF_STATUS_REPORT"):
+            vehicle = Vehicle()
+            for tenth in range(10, 200):
+                came = 0.1 * tenth
+                if tenth in (60, 120):  # it loses what aids it, and gets it back
+                    vehicle.hear(status, {"flags": 0b11 if tenth == 120 else 0b1000_0001}, came)
+                move(vehicle, came, north=0.0 if 60 <= tenth < 120 else 10.0)
+                turn(vehicle, came)
+            for when, is_known in ((5.0, True), (6.5, True), (7.5, False), (11.5, False), (12.5, True)):
+                self.assertEqual(vehicle.seen_at(when)[0] is not None, is_known, when)
+            self.assertAlmostEqual(vehicle.seen_at(6.5)[0][0] - vehicle.seen_at(5.0)[0][0], 15.0)
+            self.assertEqual((vehicle.holes_before(11.9), vehicle.holes_before(12.1)), (0, 1))
 
     def test_are_known_without_velocities_where_these_have_ended(self):
         vehicle = Vehicle()

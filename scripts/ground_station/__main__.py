@@ -23,7 +23,7 @@ import sys
 
 from log import Log
 from output import Output
-from positions import FORMATS_WITHOUT_AGE, PROCESSING, Sender
+from positions import FORMATS_WITH_AGE, FORMATS_WITHOUT_AGE, Sender
 from preflight import check
 from service import Refused, Service, Silent
 from steps import NewestLine, all_lines, captured, place_and_covariance, read_step
@@ -72,13 +72,14 @@ def parse_arguments(arguments):
                         help="retry a step for S seconds while the service is unreachable or busy (default: %(default)g; "
                              "keep 60 or more: a search can take 30 s). Half of what is left is the time for an "
                              "answer; a repetition gets what the service has computed meanwhile")
-    parser.add_argument("--format", choices=(*FORMATS_WITHOUT_AGE, *PROCESSING),
+    parser.add_argument("--format", choices=(*FORMATS_WITHOUT_AGE, *FORMATS_WITH_AGE),
                         help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
     parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
                         help="drop positions older than S seconds from capture (monotonic_s, else time_us where it is "
                              "of this computer's clock, else when its line came) to sending (default: %(default)g); of "
-                             + " and ".join(PROCESSING) + " the processing time that they report is not counted")
+                             + " and ".join(FORMATS_WITH_AGE) + ", which say how old they are, the time that the "
+                             "service took is not counted")
     parser.add_argument("--check", action="store_true",
                         help="only look whether the service has the map and --track begins on it, as is done before "
                              "each flight, and whether it takes --track and --frame, by a track that is removed again")

@@ -1,9 +1,10 @@
 """Positions to an autopilot by UDP, unless they are too old."""
 import math
 import socket
-import struct
 import sys
 import time
+
+from packet_age import TIMES, told_age_s, with_age
 
 #: These say nothing of their age: a late position would move a flying vehicle back to where it was.
 FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
@@ -13,22 +14,11 @@ WANTED_BY_ARDUPILOT = {
     "alt_m": "(height above the sea): its position is a 2D fix, which ArduPilot does not use for flight",
     "satellites": "(--frame satellites=10): its position counts 0, and ArduPilot begins to use none with fewer than 6",
 }
-#: These say how long the service took, but nothing of the way to it and back: where in the payload, in which unit.
-PROCESSING = {"global_position_sensor": ("<8xI", 1e-6), "command_int": ("<4xf", 1.0)}
-#: ArduPilot sets its position by one of these, moved on by its velocity, and takes those of more than 5 s ago for 5 s
-#: old. The rest is for the way to it.
-LONGEST_S = {"command_int": 4.5}
-HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
-
-
-def told_age_s(packet_format, packet):
-    """How old a message says that its position is."""
-    if packet_format in FORMATS_WITHOUT_AGE:
-        return 0.0
-    layout, unit_s = PROCESSING[packet_format]
-    size = struct.calcsize(layout)
-    payload = packet[HEAD:-CHECKSUM][:size].ljust(size, b"\0")  # zeros at the end are not sent
-    return unit_s * struct.unpack(layout, payload)[0]
+#: These say how old they are: as the service sends them, how long it took.
+FORMATS_WITH_AGE = tuple(TIMES)
+#: ArduPilot sets its position by a command_int, moved on by its velocity, and takes those of more than 5 s ago for 5 s
+#: old. The rest is for the way to it. PX4 drops what is older than EKF2_DELAY_MAX, which is 1 s at most.
+LONGEST_S = {"command_int": 4.5, "global_position_sensor": 1.0}
 
 
 class Sender:
@@ -52,7 +42,7 @@ class Sender:
 
     def send(self, captured, packet):
         """`captured`: when, by time.monotonic()."""
-        told_s = told_age_s(self._format, packet)
+        told_s = told_age_s(self._format, packet) if self._format in FORMATS_WITH_AGE else 0.0
         age_s = max(time.monotonic() - captured, told_s)
         why = None
         if not age_s - told_s <= self._max_age_s:  # not even where it says no number
@@ -63,6 +53,8 @@ class Sender:
         if why:
             print(f"a position is not sent: it is {why}", file=sys.stderr)
             return
+        if self._format in FORMATS_WITH_AGE:
+            packet = with_age(self._format, packet, age_s)
         try:
             self._socket.sendto(packet, self._address)
         except OSError as error:  # the step is taken all the same

@@ -10,7 +10,8 @@ from unittest import mock
 import fake_service  # noqa: F401: the folder of the program
 from words import said
 
-from positions import Sender, told_age_s
+from packet_age import told_age_s, with_age
+from positions import Sender
 from steps import Line, captured
 
 NOW_S = 5000.0  # since the start of the computer
@@ -20,6 +21,20 @@ PACKETS = Path(__file__).resolve().parents[1] / "server/autopilot/node_mavlink_v
 
 def command(told_s):
     return struct.pack("<10xff30x", 0.0, told_s)
+
+
+def sensor(told_s):
+    return struct.pack("<10xQI30x", 0, round(1e6 * told_s))
+
+
+def crc(data):
+    """CRC-16/MCRF4XX, bit by bit."""
+    value = 0xFFFF
+    for byte in data:
+        value ^= byte
+        for _ in range(8):
+            value = value >> 1 ^ (0x8408 if value & 1 else 0)
+    return value
 
 
 class Ages(unittest.TestCase):
@@ -65,9 +80,29 @@ class Packets(unittest.TestCase):
         for name, packet_format, age_s in (
                 ("global_position_sensor", "global_position_sensor", 0.25),
                 ("global_position_sensor_unknown", "global_position_sensor", 0.0),
-                ("command_int", "command_int", 0.25), ("command_int_unknown", "command_int", 0.0),
-                ("gps_input_3d", "gps_input", 0.0)):
+                ("command_int", "command_int", 0.25), ("command_int_unknown", "command_int", 0.0)):
             self.assertEqual(told_age_s(packet_format, bytes.fromhex(packets[name])), age_s, name)
+
+    def test_are_those_of_a_public_implementation_whatever_age_they_had_before(self):
+        packets = json.loads(PACKETS.read_text())
+        for packet_format, layout in (("global_position_sensor", "<QI"), ("command_int", "<ff")):
+            packet = bytes.fromhex(packets[packet_format])
+            self.assertEqual(with_age(packet_format, packet, 0.25), packet)
+            older = with_age(packet_format, packet, 0.75)
+            self.assertEqual(told_age_s(packet_format, older), 0.75)
+            self.assertEqual(with_age(packet_format, older, 0.25), packet)
+            taken, taken_before = ((sent - age) for sent, age in (
+                struct.unpack_from(layout, one, 10) for one in (older, packet)))
+            self.assertEqual(taken, taken_before, "it was taken when it was")
+            *checked, low, high = older[1:] + older[-2:]
+            self.assertEqual(crc(bytes(checked[:-2]) + bytes([158])), low + 256 * high)
+
+    def test_begin_the_time_of_command_int_anew_every_250_s(self):
+        packet = bytes.fromhex(json.loads(PACKETS.read_text())["command_int"])
+        late = struct.pack("<ff", 249.9, 0.2)
+        sent_s, age_s = struct.unpack_from("<ff", with_age("command_int", packet[:10] + late + packet[18:], 0.5), 10)
+        self.assertAlmostEqual(sent_s, 0.2, places=4)
+        self.assertEqual(age_s, 0.5)
 
 
 class Senders(unittest.TestCase):
@@ -113,6 +148,18 @@ class Senders(unittest.TestCase):
         for age_s, told_s, sent in ((3.0, 3.0, True), (4.49, 4.4, True), (4.51, 4.4, False), (4.51, 4.51, False),
                                     (0.2, 8.0, False), (1.0, 0.4, False), (1.0, float("nan"), False)):
             self.assertEqual(self.sent("command_int", age_s, command(told_s)), sent, (age_s, told_s))
+
+    def test_drop_what_is_older_than_px4_takes(self):
+        for age_s, told_s, sent in ((0.99, 0.9, True), (1.01, 0.9, False), (0.3, 1.01, False)):
+            self.assertEqual(self.sent("global_position_sensor", age_s, sensor(told_s)), sent, (age_s, told_s))
+
+    def test_say_how_old_a_position_is_when_it_is_sent(self):
+        packets = json.loads(PACKETS.read_text())
+        for packet_format in ("global_position_sensor", "command_int"):
+            packet = bytes.fromhex(packets[packet_format])  # of a service that took 0.25 s
+            for age_s, told_s in ((0.25, 0.25), (0.5625, 0.5625), (0.1, 0.25)):
+                self.sender(packet_format).send(NOW_S - age_s, packet)
+                self.assertEqual(told_age_s(packet_format, self.autopilot.recv(2048)), told_s)
 
     def expecting(self, packet_format, *steps):
         sender = self.sender(packet_format)

@@ -16,6 +16,7 @@ With --csv the flight of a vehicle that has GPS becomes a table of its pictures 
 GLOBAL_POSITION_INT while GPS_RAW_INT tells a 3D fix. Send the autopilot no positions meanwhile: they would be its own.
 """
 import contextlib
+import errno
 import math
 import os
 import select
@@ -39,6 +40,16 @@ from vehicle import Vehicle
 
 LOOK_S = 0.1       # between two looks into the folder
 MOST_HEARD = 1000  # datagrams between them, so that a flood of them leaves time to look
+
+
+def listen(link, address):
+    """Throws OSError that says where."""
+    try:
+        link.bind(address)
+    except OSError as error:
+        question = ": does another program, as a ground station, listen there? Let the autopilot send to another port"
+        why = f"{error.strerror or error}{question if error.errno == errno.EADDRINUSE else ''}"
+        raise OSError(f"--listen {address[0]}:{address[1]}: {why}") from None
 
 
 def hear(link, receiver):
@@ -91,7 +102,7 @@ def main(arguments=None):
         family = socket.AF_INET6 if ":" in options.listen[0] else socket.AF_INET
         with contextlib.ExitStack() as opened:
             link = opened.enter_context(socket.socket(family, socket.SOCK_DGRAM))
-            link.bind(options.listen)
+            listen(link, options.listen)
             link.setblocking(False)
             table = opened.enter_context(Table(options.csv, columns(options))) if options.csv else None
             print(f"listening on UDP port {link.getsockname()[1]}", file=sys.stderr)

@@ -305,6 +305,17 @@ class Program(unittest.TestCase):
         self.assertIn(f"mavlink_steps: {table} is there already: give each flight a table of its own", ended.stderr)
         self.assertEqual(table.read_text(), "another\n")
 
+    def test_says_where_it_cannot_listen(self):
+        with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+            taken.bind(("127.0.0.1", 0))
+            port = taken.getsockname()[1]
+            for address, asks in ((f"127.0.0.1:{port}", True), ("192.0.2.1:0", False)):
+                ended = subprocess.run([sys.executable, "-B", str(PROGRAM), "--watch", self.folder.name, "--camera",
+                                        "body", "--listen", address], stderr=subprocess.PIPE, text=True, timeout=60)
+                self.assertEqual(ended.returncode, 1)
+                self.assertIn(f"mavlink_steps: --listen {address}: ", ended.stderr)
+                self.assertEqual("does another program" in ended.stderr, asks, ended.stderr)
+
     def test_outlasts_a_folder_that_is_gone_for_a_moment(self):
         self.start()
         folder = Path(self.folder.name)

@@ -51,7 +51,6 @@ struct FixArguments {
   std::string csv;
 };
 
-constexpr std::chrono::seconds kQuiet{2};     // a search that is over by then says nothing of its progress
 constexpr std::chrono::seconds kUnsaved{10};  // of answers, at most, where the process is killed
 
 Prior prior_of(const FixArguments& options) {
@@ -144,10 +143,7 @@ void fix_one(const FixArguments& options, const std::filesystem::path& picture) 
   FeatureInput inputs(search.input, search.view);
   Seen seen = seen_in(picture, search, inputs);
   Progress progress("searching", "headings");
-  const auto began = std::chrono::steady_clock::now();
-  const Fix fix = located(search, seen, [&](std::int64_t done, std::int64_t total) {
-    if (std::chrono::steady_clock::now() - began >= kQuiet) progress.update(done, total);
-  });
+  const Fix fix = located(search, seen, progress.updates_if_long());
   print_answer(fix, seen.features, options.as_json, std::nullopt);
 }
 

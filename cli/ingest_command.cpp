@@ -43,9 +43,23 @@ IngestReport ingest_with_progress(const PlannedSource& planned, const SourceSumm
   return ingest(*planned.cells, record, writer, options);
 }
 
+/// The road data of a country take minutes to read.
+PlannedSource plan_with_progress(SourceRequest request, const MapSettings& settings, const RoadDetector* detector) {
+  Progress reading(fmt::format("reading {}", request.files.name), "%", 0.1);
+  request.vectors.on_reading = reading.updates_if_long();
+  return plan_source(request, settings, detector);
+}
+
+MapSettings settings_with_progress(const IngestArguments& arguments, SourceRequest first,
+                                   const RoadDetector* detector) {
+  Progress placing(fmt::format("placing {}", first.files.name), "%", 0.1);
+  first.vectors.on_reading = placing.updates_if_long();
+  return settings_of(arguments, first, detector);
+}
+
 void ingest_one(const IngestArguments& arguments, const SourceRequest& request, const MapSettings& settings,
                 const RoadDetector* detector, std::optional<MapWriter>& writer, const std::stop_token& stop) {
-  const PlannedSource planned = plan_source(request, settings, detector);
+  const PlannedSource planned = plan_with_progress(request, settings, detector);
   const CellSource& source = *planned.cells;
   SourceSummary summary = summary_of(source, request.files);
   std::ranges::move(zone_notes(source, settings), std::back_inserter(summary.notes));
@@ -120,7 +134,7 @@ void run(const IngestArguments& arguments) {
       std::ranges::any_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; });
   if (imagery) note_missing_network(arguments.detector);
   const std::unique_ptr<RoadDetector> detector = imagery ? make_map_detector(arguments.detector) : nullptr;
-  const MapSettings settings = settings_of(arguments, requests.front(), detector.get());
+  const MapSettings settings = settings_with_progress(arguments, requests.front(), detector.get());
   std::optional<MapWriter> writer;
   try {
     for (const SourceRequest& request : requests) {

@@ -100,6 +100,13 @@ OnProgress Progress::updates() {
   return [this](std::int64_t done, std::int64_t total) { update(done, total); };
 }
 
+OnProgress Progress::updates_if_long() {
+  constexpr std::chrono::seconds kQuiet{2};
+  return [this, loud = Clock::now() + kQuiet](std::int64_t done, std::int64_t total) {
+    if (Clock::now() >= loud) update(done, total);
+  };
+}
+
 void Progress::print(std::int64_t done, std::int64_t total) {
   const double seconds = std::chrono::duration<double>(Clock::now() - started_).count();
   const auto items = static_cast<double>(done - first_done_);

@@ -34,6 +34,8 @@ class Progress {
   void update(std::int64_t done, std::int64_t total);
   /// update() for work that reports how far it is. The progress must outlive it.
   OnProgress updates();
+  /// As updates(), but says nothing of work that is over two seconds from now.
+  OnProgress updates_if_long();
 
  private:
   void print(std::int64_t done, std::int64_t total);

@@ -15,6 +15,7 @@
 #include "core/units/shell_word.hpp"
 #include "tiles/sources/bare_rim.hpp"
 #include "tiles/sources/coordinate_limits.hpp"
+#include "tiles/sources/files_progress.hpp"
 #include "tiles/sources/road_geometry.hpp"
 #include "tiles/sources/road_ground.hpp"
 #include "tiles/sources/road_layer.hpp"
@@ -196,12 +197,20 @@ std::optional<LatLon> centre_of_file(VectorFile& file, const std::string& path, 
   return std::nullopt;
 }
 
+VectorOptions with_progress(VectorOptions options, OnProgress on_reading) {
+  options.on_reading = std::move(on_reading);
+  return options;
+}
+
 }  // namespace
 
 RoadNetwork read_road_network(const std::vector<std::string>& paths, const VectorOptions& options,
                               const RoadRules& rules, UtmZone zone) {
   RoadParts parts;
-  for (const std::string& path : paths) add_file(path, options, rules, zone, parts);
+  FilesProgress progress(paths, options.on_reading);
+  for (std::size_t i = 0; i < paths.size(); ++i) {
+    add_file(paths[i], with_progress(options, progress.of(i)), rules, zone, parts);
+  }
   if (!parts.any_layer) refuse_layer(paths.front(), options);
   if (parts.features == 0) refuse_empty(paths.front(), options);
   RoadNetwork network = join(parts, rules);
@@ -217,12 +226,13 @@ RoadNetwork read_road_network(const std::vector<std::string>& paths, const Vecto
 
 LatLon centre_of_roads(const std::vector<std::string>& paths, const VectorOptions& options) {
   if (!options.extent.empty()) return centre_of_extent(options.extent);
+  FilesProgress progress(paths, options.on_reading);
   bool any_layer = false;
   for (const bool of_lines : {true, false}) {  // areas of countries, and points of interest, may lie anywhere
-    for (const std::string& path : paths) {
-      VectorFile file(path, options);
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+      VectorFile file(paths[i], with_progress(options, progress.of(i)));
       any_layer = any_layer || !file.layers().empty();
-      if (const std::optional<LatLon> centre = centre_of_file(file, path, of_lines)) return *centre;
+      if (const std::optional<LatLon> centre = centre_of_file(file, paths[i], of_lines)) return *centre;
     }
   }
   if (!any_layer) refuse_layer(paths.front(), options);

@@ -11,6 +11,7 @@
 
 #include "core/geodesy/latlon.hpp"
 #include "core/geodesy/utm.hpp"
+#include "core/units/progress.hpp"
 #include "tiles/sources/plane_polygon.hpp"
 #include "tiles/sources/road_rules.hpp"
 
@@ -23,7 +24,8 @@ struct VectorOptions {
   /// (of OGR, or a polygon filter of Osmosis), whose holes are not covered; empty = bounding box of the lines of each
   /// layer, at least 32 m and twice the widest road across (of the tile for vector tiles).
   std::string extent;
-  std::stop_token stop = {};  ///< ends the reading of features: those of a country take minutes
+  std::stop_token stop = {};   ///< ends the reading of features: those of a country take minutes
+  OnProgress on_reading = {};  ///< gets how far the reading of features is, where the format tells
 };
 
 struct RoadLine {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <regex>
@@ -59,6 +60,17 @@ std::optional<OGREnvelope> stored_extent(OGRLayer& layer) {
 bool may_be_mixed(OGRLayer& layer) {
   const OGRwkbGeometryType type = wkbFlatten(layer.GetGeomType());
   return type == wkbUnknown || type == wkbGeometryCollection;
+}
+
+/// Infinite where it takes reading them.
+double count_in(const std::vector<OGRLayer*>& layers) {
+  const GdalMessages messages;
+  double count = 0.0;
+  for (OGRLayer* layer : layers) {
+    const GIntBig known = layer->GetFeatureCount(FALSE);
+    count += known < 0 ? std::numeric_limits<double>::infinity() : static_cast<double>(known);
+  }
+  return count;
 }
 
 }  // namespace
@@ -144,7 +156,7 @@ std::optional<OGREnvelope> VectorFile::bounding_box(OGRLayer& layer) {
     geometry->getEnvelope(&own);
     (holds_a_line(*geometry) && limits.hold(*geometry) ? lines : others).Merge(own);
   };
-  osm_ ? for_each_feature(add) : for_each_feature_of(layer, add);  // OpenStreetMap's layers come interleaved only
+  osm_ ? for_each_feature(add) : for_each_feature_of({&layer}, add);  // OpenStreetMap's layers come interleaved only
   const OGREnvelope& box = lines.IsInit() != 0 ? lines : others;
   return box.IsInit() != 0 ? std::optional(box) : std::nullopt;
 }
@@ -156,19 +168,37 @@ CoordinateLimits VectorFile::limits_of(OGRLayer& layer) const {
 
 void VectorFile::for_each_feature(const Visit& visit) {
   if (!osm_) {  // what other layers and tables of the file hold is no concern
-    for (OGRLayer* layer : layers_) for_each_feature_of(*layer, visit);
+    for_each_feature_of(layers_, visit);
     return;
   }
   dataset_->ResetReading();
   OGRLayer* layer = nullptr;
-  const auto next = [&] { return dataset_->GetNextFeature(&layer, nullptr, nullptr, nullptr); };
-  while (const OGRFeatureUniquePtr feature = read(next)) visit(*layer, *feature);
+  double share = 0.0;
+  const auto next = [&] { return dataset_->GetNextFeature(&layer, &share, nullptr, nullptr); };
+  while (const OGRFeatureUniquePtr feature = read(next)) {
+    visit(*layer, *feature);
+    tell(share);
+  }
+  tell(1.0);
 }
 
-void VectorFile::for_each_feature_of(OGRLayer& layer, const Visit& visit) {
-  layer.ResetReading();
-  const auto next = [&] { return layer.GetNextFeature(); };
-  while (const OGRFeatureUniquePtr feature = read(next)) visit(layer, *feature);
+void VectorFile::for_each_feature_of(const std::vector<OGRLayer*>& layers, const Visit& visit) {
+  const double count = count_in(layers);
+  double seen = 0.0;
+  for (OGRLayer* layer : layers) {
+    layer->ResetReading();
+    const auto next = [&] { return layer->GetNextFeature(); };
+    while (const OGRFeatureUniquePtr feature = read(next)) {
+      visit(*layer, *feature);
+      tell(++seen / count);
+    }
+  }
+  tell(1.0);
+}
+
+void VectorFile::tell(double share) const {
+  constexpr double kWhole = 1e6;
+  if (options_.on_reading) options_.on_reading(std::lround(kWhole * std::min(1.0, share)), std::lround(kWhole));
 }
 
 /// Refuses what GDAL says of reading alone: what PROJ says of coordinates while features are visited is no damage.

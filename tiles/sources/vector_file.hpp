@@ -49,12 +49,13 @@ class VectorFile {
   /// state it, or wrongly, all features of the layer are read.
   std::optional<OGREnvelope> extent_of(OGRLayer& layer);
   using Visit = std::function<void(OGRLayer&, OGRFeature&)>;
-  /// Once through all features of layers(); of OpenStreetMap files, of all. Throws CorruptData "roads-unreadable",
-  /// IoFailure "temporary-files-refused", or Interrupted "work-stopped".
+  /// Once through all features of layers(); of OpenStreetMap files, of all. Tells how far it is. Throws CorruptData
+  /// "roads-unreadable", IoFailure "temporary-files-refused", or Interrupted "work-stopped".
   void for_each_feature(const Visit& visit);
 
  private:
-  void for_each_feature_of(OGRLayer& layer, const Visit& visit);
+  void for_each_feature_of(const std::vector<OGRLayer*>& layers, const Visit& visit);
+  void tell(double share) const;
   OGRFeatureUniquePtr read(const std::function<OGRFeature*()>& next) const;
   void refuse_unread(const GdalMessages& messages) const;
   std::optional<OGREnvelope> bounding_box(OGRLayer& layer);

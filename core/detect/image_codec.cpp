@@ -63,11 +63,8 @@ cv::Mat decode_image(Bytes bytes, std::int64_t max_pixels, const std::stop_token
                         fmt::format("the image has {} x {} pixels; at most {} pixels are allowed: send it smaller",
                                     header->cols, header->rows, max_pixels));
   }
-  cv::Mat image = header->format == ImageHeader::Format::kPng ? decode_png(bytes) : decode_jpeg(bytes, stop);
-  if (image.cols != header->cols || image.rows != header->rows) {
-    throw InvalidInput("image-damaged", "the image is damaged: it has two sizes");
-  }
-  return image;
+  const cv::Size2l told(header->cols, header->rows);
+  return header->format == ImageHeader::Format::kPng ? decode_png(bytes, told) : decode_jpeg(bytes, told, stop);
 }
 
 std::vector<std::uint8_t> encode_frame(const FramePixels& frame) {

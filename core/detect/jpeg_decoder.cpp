@@ -32,8 +32,11 @@ struct Reader {
   std::jmp_buf before{};
   std::array<char, JMSG_LENGTH_MAX> message{};
   cv::Mat pixels;
+  cv::Size2l told;
   std::stop_token stop;
 };
+
+void say(Reader& reader, const char* why) { std::strncpy(reader.message.data(), why, reader.message.size() - 1); }
 
 [[noreturn]] void on_error(j_common_ptr jpeg) {
   auto& reader = *static_cast<Reader*>(jpeg->client_data);
@@ -51,7 +54,7 @@ void on_message(j_common_ptr jpeg, int level) {
 void on_progress(j_common_ptr jpeg) {
   auto& reader = *static_cast<Reader*>(jpeg->client_data);
   const bool many = reader.jpeg.input_scan_number > kMostScans;
-  if (many) std::strncpy(reader.message.data(), "more than 100 scans", reader.message.size() - 1);
+  if (many) say(reader, "more than 100 scans");
   if (many || reader.stop.stop_requested()) std::longjmp(reader.before, 1);
 }
 
@@ -69,6 +72,10 @@ bool read(Reader& reader, std::span<const std::uint8_t> bytes) {
   jpeg.progress = &reader.progress;
   jpeg_mem_src(&jpeg, bytes.data(), bytes.size());
   jpeg_read_header(&jpeg, TRUE);
+  if (reader.told.width != jpeg.image_width || reader.told.height != jpeg.image_height) {
+    say(reader, "it has two sizes");
+    return false;
+  }
   choose_colours(jpeg);
   jpeg_start_decompress(&jpeg);
   reader.pixels.create(static_cast<int>(jpeg.output_height), static_cast<int>(jpeg.output_width),
@@ -83,8 +90,9 @@ bool read(Reader& reader, std::span<const std::uint8_t> bytes) {
 
 }  // namespace
 
-cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes, const std::stop_token& stop) {
+cv::Mat decode_jpeg(std::span<const std::uint8_t> bytes, cv::Size2l told, const std::stop_token& stop) {
   Reader reader;
+  reader.told = told;
   reader.stop = stop;
   reader.progress.progress_monitor = on_progress;
   reader.jpeg.err = jpeg_std_error(&reader.errors);

@@ -7,10 +7,11 @@
 
 namespace roadfix {
 
-cv::Mat decode_png(std::span<const std::uint8_t> bytes) {
+cv::Mat decode_png(std::span<const std::uint8_t> bytes, cv::Size2l told) {
   try {
     PngReader png(std::as_bytes(bytes), PngOrigin::kOutside);
     const PngShape& shape = png.shape();
+    if (told != cv::Size2l(shape.cols, shape.rows)) throw CorruptData("png-damaged", "it has two sizes");
     cv::Mat pixels(shape.rows, shape.cols, CV_MAKETYPE(shape.bits == 16 ? CV_16U : CV_8U, shape.channels));
     png.read({pixels.data, shape.bytes()});
     return pixels;

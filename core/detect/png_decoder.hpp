@@ -7,8 +7,8 @@
 
 namespace roadfix {
 
-/// Grey, BGR or BGR with alpha, of 8 bits or 16, see PngOrigin::kOutside. The caller has looked at the size in the
-/// header. Throws InvalidInput "image-damaged".
-cv::Mat decode_png(std::span<const std::uint8_t> bytes);
+/// Grey, BGR or BGR with alpha, of 8 bits or 16, see PngOrigin::kOutside. The caller has looked at the size, `told`, in
+/// the header. Throws InvalidInput "image-damaged", before it makes room for pixels where libpng finds another size.
+cv::Mat decode_png(std::span<const std::uint8_t> bytes, cv::Size2l told);
 
 }  // namespace roadfix

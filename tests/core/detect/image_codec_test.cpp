@@ -10,8 +10,11 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 #include <stop_token>
+#include <string>
+#include <vector>
 
 #include "core/detect/frame_image.hpp"
+#include "core/png/png_chunk.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/encoded.hpp"
@@ -55,6 +58,36 @@ TEST(DecodeImage, RefusesABombByItsHeader) {
   png[16] = 0x7f;  // 2 billion columns
   EXPECT_EQ(code_of([&] { decode_image(png, kMany); }), "image-too-large");
   EXPECT_EQ(code_of([&] { decode_image(encoded(".png", cv::Mat(100, 100, CV_8UC1)), 9'999); }), "image-too-large");
+}
+
+std::string refusal_of(Bytes picture) {
+  try {
+    decode_image(picture, kMany);
+    return "none";
+  } catch (const InvalidInput& error) {
+    return error.what();
+  }
+}
+
+/// libpng passes over a text before the header, of which the first bytes look like the size of 2 x 2 pixels.
+TEST(DecodeImage, RefusesAPngBombBehindAnotherSizeBeforeItMakesRoom) {
+  const std::string size = png_number(30'000) + png_number(30'000);
+  const std::string png = std::string(kPngSignature) + png_chunk("tEXt", png_number(2) + png_number(2) + "name") +
+                          png_chunk("IHDR", size + std::string{8, 0, 0, 0, 0}) + png_chunk("IDAT", {});
+  ASSERT_EQ(read_image_header(bytes_of(png))->cols, 2);
+  EXPECT_THAT(refusal_of(bytes_of(png)), ::testing::HasSubstr("two sizes"));
+}
+
+/// To libjpeg the marker TEM has no length. With one it leads to where two comments look like a header.
+TEST(DecodeImage, RefusesAJpegBombBehindAnotherSizeBeforeItMakesRoom) {
+  std::vector<std::uint8_t> jpeg{0xff, 0xd8, 0xff, 0x01, 0xff, 0xfe, 0xff, 0xff};
+  const auto append = [&jpeg](std::initializer_list<std::uint8_t> bytes) { jpeg.insert(jpeg.end(), bytes); };
+  jpeg.resize(4 + 0xfffe);
+  append({0xff, 0xc0, 0, 0xff, 0xfe, 0, 16, 0, 16});
+  jpeg.resize(jpeg.size() + 12);
+  append({0xff, 0xc0, 0, 11, 8, 0x75, 0x30, 0x75, 0x30, 1, 1, 0x11, 0, 0xff, 0xda, 0, 8, 1, 1, 0, 0, 63, 0});
+  ASSERT_EQ(read_image_header(jpeg)->cols, 16);
+  EXPECT_THAT(refusal_of(jpeg), ::testing::HasSubstr("two sizes"));
 }
 
 TEST(DecodeImage, RefusesWhatIsNoImageAndWhatIsDamaged) {

@@ -61,7 +61,7 @@ struct SearchProof {
   double cell_m = 0.0;  ///< of the lattice of positions that it covers
   int headings = 0;     ///< bins within the range
   int scales = 1;
-  double best_score = 0.0;      ///< of the best pose found, on this lattice
+  double best_score = 0.0;      ///< of the best pose found, on this lattice; 0 if none was scored there in time
   double bound = 1.0;           ///< no pose on this lattice scores more; equal to best_score if `complete`
   bool complete = false;        ///< the best pose is proven to be the best; else time ran out
   double excluded_share = 0.0;  ///< of the poses that cannot be better than the best, at least; 1 if `complete`

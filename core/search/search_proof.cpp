@@ -46,7 +46,10 @@ SearchProof prove(const SearchLevels& levels, const SearchOptions& options, std:
   const Level& level = levels.at(levels.proof_level());
   BoundedSearch bounded = bounded_search(levels, level, options, candidates);
   SearchProof proof{
-      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), bounded.known, 1.0, false, 0.0};
+      level.cell_m(), static_cast<int>(bounded.headings.size()), level.scales.count(), 0.0, 1.0, false, 0.0};
+  // Candidates that were not followed to this level in time have the scores of coarser cells.
+  if (options.deadline.over()) return proof;
+  proof.best_score = bounded.known;
   // Following the best pose to the finest cells needs the rest of the time.
   const Deadline deadline = options.deadline.after(0.5).within(options.proof_time);
   const int largest = level.scales.reach();

@@ -79,6 +79,23 @@ TEST(SearchProof, MakesNothingOfTheMapWhenTimeEndsAsItIsRead) {
   EXPECT_TRUE(found.complete());
 }
 
+TEST(SearchProof, TellsNoScoreOfCoarserCellsWhereTimeEndsBeforeItsOwnAreLookedAt) {
+  const RoadGrid map = street_map(14, {2.0, {150'000, -2'000'000}, 300, 300});
+  const FeatureMap seen = cut_out(map, {map.geometry.box().centre(), Angle()}, 150, 150, 2.0);
+  const std::chrono::milliseconds limit(1500);
+  const auto slowly = [&](const GridGeometry& window) {
+    if (window.cell_m == 4.0) std::this_thread::sleep_for(limit);
+    return reader_of(map)(window);
+  };
+  SearchOptions options;
+  options.proof_time = std::chrono::minutes(5);
+  options.deadline = Deadline({}, std::chrono::steady_clock::now() + limit);
+  const SearchResult found = search(slowly, 2.0, seen, all_poses_in(map.geometry.box()), options);
+  EXPECT_FALSE(found.refined);
+  EXPECT_EQ(found.proof->best_score, 0.0);
+  EXPECT_EQ(found.proof->bound, 1.0);
+}
+
 TEST(SearchProof, IsOverAllScalesToo) {
   const RoadGrid map = street_map(18, {2.0, {150'000, -2'000'000}, 350, 300});
   std::mt19937_64 random(19);

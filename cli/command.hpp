@@ -19,6 +19,7 @@ void add_info_command(CLI::App& app);
 void add_ingest_command(CLI::App& app);
 void add_localizability_command(CLI::App& app);
 void add_match_command(CLI::App& app);
+void add_pairs_command(CLI::App& app);
 void add_remove_command(CLI::App& app);
 void add_serve_command(CLI::App& app);
 void add_terrain_command(CLI::App& app);

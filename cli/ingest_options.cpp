@@ -1,7 +1,5 @@
 #include "cli/ingest_options.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -11,24 +9,10 @@
 #include "cli/number_checks.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/word_option.hpp"
-#include "core/units/error.hpp"
-#include "core/units/file.hpp"
 #include "core/units/provenance.hpp"
 
 namespace roadfix::cli {
 namespace {
-
-RoadRules rules_of(const IngestArguments& arguments) {
-  RoadRules rules;
-  if (!arguments.rules_file.empty()) {
-    rules = RoadRules::parse(read_named_file(arguments.rules_file));
-  }
-  if (!arguments.classes.empty()) rules.select(arguments.classes);
-  if (!arguments.class_attribute.empty()) rules.set_class_attribute(arguments.class_attribute);
-  if (!arguments.width_attribute.empty()) rules.set_width_attribute(arguments.width_attribute);
-  if (arguments.width_m) rules.set_width_m(*arguments.width_m);
-  return rules;
-}
 
 void add_content_options(CLI::App& command, IngestArguments& a) {
   constexpr std::array<Word<std::optional<SourceContent>>, 3> kContents{
@@ -41,17 +25,7 @@ void add_content_options(CLI::App& command, IngestArguments& a) {
   command.add_option(
       "--nodata-color", a.collar,
       "Colour of the collar around the imagery: white, black or R,G,B; for one that does not fill a corner");
-  command.add_option("--layer", a.vectors.layer, "Only this layer of vector files");
-  command.add_option("--extent", a.vectors.extent,
-                     "Ground that road lines cover: W,S,E,N in degrees, or a file with polygons (GeoJSON, .poly, ...)");
-  command.add_option("--classes", a.classes, "Draw exactly these road classes, comma-separated");
-  command.add_option("--rules", a.rules_file,
-                     "Table of road classes in place of the built-in one: lines 'class width_m yes|no'");
-  command.add_option("--class-attribute", a.class_attribute,
-                     "Attribute with the road class; default: highway, fclass, type, class or road_class");
-  command.add_option("--width-attribute", a.width_attribute,
-                     "Attribute that holds the width in metres; NAME:ft if in feet");
-  command.add_option("--width", a.width_m, "Width of all roads in metres")->check(between(0.5, 100.0));
+  add_road_options(command, a.roads);
 }
 
 /// Whose empty text is one, too.
@@ -78,45 +52,29 @@ void add_provenance_options(CLI::App& command, IngestArguments& a) {
 
 SourceRequest request_of(const IngestArguments& arguments, const std::string& source) {
   SourceRequest request;
-  request.files = find_source(source, arguments.content, arguments.vectors.layer);
+  request.files = find_source(source, arguments.content, arguments.roads.lines.layer);
   if (!arguments.name.empty()) request.files.name = arguments.name;
   request.raster.crs = arguments.crs;
   if (!arguments.collar.empty()) request.raster.collar = parse_colour(arguments.collar);
-  request.vectors = arguments.vectors;
+  request.vectors = arguments.roads.lines;
   request.vectors.crs = arguments.crs;
-  request.rules = rules_of(arguments);
+  request.rules = rules_of(arguments.roads);
   return request;
 }
 
 void refuse_without_effect(const IngestArguments& a, std::span<const SourceRequest> requests) {
   const auto lines = std::ranges::count(requests, SourceKind::kRoadVectors, [](const auto& r) { return r.files.kind; });
-  const auto refuse = [&](bool given, const char* option, const char* why) {
-    if (!given) return;
-    throw InvalidInput("option-without-effect",
-                       fmt::format("{} does nothing with {}: {}", option, requests.front().files.location, why));
-  };
-  if (lines == std::ssize(requests)) {
-    refuse(!a.collar.empty(), "--nodata-color", "lines have no collar");
-  }
+  const std::string& source = requests.front().files.location;
+  if (lines == std::ssize(requests)) refuse_option(!a.collar.empty(), "--nodata-color", source, "lines have no collar");
   if (std::ranges::none_of(requests, [](const auto& r) { return r.files.kind == SourceKind::kImagery; })) {
     constexpr const char* kRoads = "it is about finding roads in imagery, and these are roads already";
     const DetectorChoice usual;
-    refuse(a.detector.name != usual.name, "--detector", kRoads);
-    refuse(a.detector.model != usual.model, "--model", kRoads);
-    refuse(a.detector.orientations.has_value(), "--orientations", kRoads);
-    refuse(a.detector.tree != usual.tree, "--tree-...", kRoads);
+    refuse_option(a.detector.name != usual.name, "--detector", source, kRoads);
+    refuse_option(a.detector.model != usual.model, "--model", source, kRoads);
+    refuse_option(a.detector.orientations.has_value(), "--orientations", source, kRoads);
+    refuse_option(a.detector.tree != usual.tree, "--tree-...", source, kRoads);
   }
-  if (lines > 0) return;
-  refuse(!a.vectors.extent.empty(), "--extent",
-         "it says what ground lines cover, and these are pixels. To ingest a part of them, cut them before "
-         "(gdalwarp -te)");
-  constexpr const char* kPixels = "it is about road lines, and these are pixels";
-  refuse(!a.vectors.layer.empty(), "--layer", kPixels);
-  refuse(!a.classes.empty(), "--classes", kPixels);
-  refuse(!a.rules_file.empty(), "--rules", kPixels);
-  refuse(!a.class_attribute.empty(), "--class-attribute", kPixels);
-  refuse(!a.width_attribute.empty(), "--width-attribute", kPixels);
-  refuse(a.width_m.has_value(), "--width", kPixels);
+  if (lines == 0) refuse_for_pixels(a.roads, source);
 }
 
 void add_ingest_options(CLI::App& command, IngestArguments& a) {

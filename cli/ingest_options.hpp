@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/detector_options.hpp"
+#include "cli/road_options.hpp"
 #include "core/units/provenance.hpp"
 #include "tiles/pipeline/describe_source.hpp"
 #include "tiles/pipeline/ingest.hpp"
@@ -25,12 +26,7 @@ struct IngestArguments {
   std::string zone;
   std::string crs;
   std::string collar;
-  std::string rules_file;
-  std::string classes;
-  std::string class_attribute;
-  std::string width_attribute;
-  std::optional<double> width_m;
-  VectorOptions vectors;
+  RoadArguments roads;
   DetectorChoice detector;
   UserProvenance told;
   IngestOptions options;

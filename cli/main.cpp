@@ -61,6 +61,7 @@ int main(int argc, char** argv) {
   roadfix::cli::add_frames_command(app);
   roadfix::cli::add_boresight_command(app);
   roadfix::cli::add_world_command(app);
+  roadfix::cli::add_pairs_command(app);
   roadfix::cli::add_serve_command(app);
   try {
     app.parse(argc, argv);

@@ -5,6 +5,7 @@ Example: nice python3 models/train.py --data ../shared/data --out build/roadnet 
 A run that was interrupted goes on from its last checkpoint when the same command is given again.
 """
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 import cv2
@@ -20,9 +21,10 @@ def arguments():
     here = Path(__file__).resolve().parent
     parser.add_argument("--data", default=here.parent / "../shared/data", type=Path, help="folder that the manifest's paths start from")
     parser.add_argument("--sets", default=here / "datasets.json", type=Path, help="manifest of sets (%(default)s)")
-    parser.add_argument("--pairs", action="append", default=[], metavar="DIR=GSD_M[:SHARE]",
+    parser.add_argument("--pairs", action="append", default=[], metavar="DIR[=GSD_M][:SHARE]",
                         help="own pairs: DIR/images and DIR/masks with equal file stems, and their share of the crops "
-                             "(against those of the manifest); may be given again")
+                             "(against those of the manifest); may be given again. Of a folder that roadfix pairs wrote "
+                             "pairs.json says the scale")
     parser.add_argument("--only-pairs", action="store_true", help="train on --pairs alone")
     parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
     parser.add_argument("--begin-with", type=Path, metavar="FILE", help="weights of a checkpoint or of an exported network (.onnx) instead of random ones")
@@ -55,18 +57,37 @@ def arguments():
     return parser.parse_args()
 
 
+def described_sets(folder):
+    """Of a folder that roadfix pairs wrote."""
+    manifest = folder / "pairs.json"
+    if not manifest.is_file():
+        raise SystemExit(f"--pairs {folder}: there is no {manifest}, which roadfix pairs writes; of other pairs write "
+                         "DIR=GSD_M or DIR=GSD_M:SHARE, for example my-pairs=0.5")
+    for options in read_sets(manifest, folder):
+        yield replace(options, images=str(folder / options.images), masks=str(folder / options.masks))
+
+
+def parts_of(text):
+    """Folder, scale and share of --pairs; empty where they are not told."""
+    folder, told, rest = text.rpartition("=")
+    if told:
+        gsd, _, share = rest.partition(":")
+        return folder, gsd, share
+    folder, _, share = (text, "", "") if Path(text).is_dir() else text.rpartition(":")
+    return folder or text, "", share
+
+
 def own_sets(texts):
     for text in texts:
-        folder, _, rest = text.rpartition("=")
-        if not folder:
-            raise SystemExit(f"--pairs {text}: write DIR=GSD_M or DIR=GSD_M:SHARE, for example my-pairs=0.5")
-        gsd, _, share = rest.partition(":")
+        folder, gsd, share = parts_of(text)
         folder = Path(folder).resolve()
         for part in ("images", "masks"):
             if not (folder / part).is_dir():
                 raise SystemExit(f"--pairs {text}: there is no folder {folder / part}")
-        yield SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd),
-                         share=float(share or 1.0), ignore_band_m=1.0)
+        sets = described_sets(folder) if not gsd else [SetOptions(
+            name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd), ignore_band_m=1.0)]
+        for options in sets:
+            yield replace(options, share=float(share)) if share else options
 
 
 def main():

@@ -64,6 +64,10 @@ class Training(unittest.TestCase):
         return ("train.py", "--pairs", f"{self.folder / pairs}=1.0", "--only-pairs", "--out", self.folder / out, "--size", 96,
                 "--batch", 4, "--save-every", 10, "--validate-every", 1000, "--threads", 1, "--device", "cpu", *more)
 
+    def describe(self, pairs, **options):
+        sets = [{"name": "own", "images": "images", "masks": "masks", "gsd_m": 0.5, "nodata": "black", **options}]
+        (self.folder / pairs / "pairs.json").write_text(json.dumps({"sets": sets}))
+
     def train(self, pairs, out, *more):
         return run(*self.command(pairs, out, *more))
 
@@ -72,6 +76,21 @@ class Training(unittest.TestCase):
             for line in process.stdout:
                 if line.startswith(f"step {step}/"):
                     process.kill()
+
+    def test_pairs_that_roadfix_wrote_say_their_scale_and_the_command_their_share(self):
+        self.describe("pairs")
+        folder = self.folder / "pairs"
+        for told, share in ((folder, 1.0), (f"{folder}:0.3", 0.3)):
+            [found] = train.own_sets([str(told)])
+            self.assertEqual((found.gsd_m, found.nodata, found.share), (0.5, "black", share))
+            self.assertEqual(len(data.load_pairs(found, self.folder / "elsewhere")[0]), 7, "one of six is held out")
+        [found] = train.own_sets([f"{folder}=1.5:0.2"])
+        self.assertEqual((found.gsd_m, found.nodata, found.share), (1.5, "", 0.2), "as the command says")
+
+    def test_pairs_without_a_scale_are_refused(self):
+        for told, message in ((self.folder / "pairs", "pairs.json"), (self.folder / "absent", "no folder")):
+            with self.assertRaisesRegex(SystemExit, message):
+                list(train.own_sets([str(told)]))
 
     def test_a_users_own_pairs_become_a_network_that_opencv_runs(self):
         self.train("pairs", "run", "--steps", 30, "--ramp", 1000000)

@@ -22,6 +22,8 @@ Orthoimage read_orthoimage(const std::string& path, const UtmZone& zone) {
   return {mosaic.view(box, gsd_m), {box.min.east_m, box.max.north_m}};
 }
 
-UtmZone zone_of_image(const std::string& path) { return UtmZone::containing(centre_of(RasterFile(path, {}))); }
+UtmZone zone_of_image(const std::string& path, const RasterOptions& options) {
+  return UtmZone::containing(centre_of(RasterFile(path, options)));
+}
 
 }  // namespace roadfix

@@ -5,6 +5,7 @@
 
 #include "core/detect/orthoimage.hpp"
 #include "core/geodesy/utm.hpp"
+#include "tiles/sources/raster_file.hpp"
 
 namespace roadfix {
 
@@ -13,6 +14,6 @@ namespace roadfix {
 Orthoimage read_orthoimage(const std::string& path, const UtmZone& zone);
 
 /// The zone that its centre lies in. Throws what RasterFile and Georeference throw.
-UtmZone zone_of_image(const std::string& path);
+UtmZone zone_of_image(const std::string& path, const RasterOptions& options = {});
 
 }  // namespace roadfix

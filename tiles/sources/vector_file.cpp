@@ -204,7 +204,7 @@ void VectorFile::tell(double share) const {
 /// Refuses what GDAL says of reading alone: what PROJ says of coordinates while features are visited is no damage.
 OGRFeatureUniquePtr VectorFile::read(const std::function<OGRFeature*()>& next) const {
   if (options_.stop.stop_requested()) {
-    throw Interrupted("work-stopped", fmt::format("stopped while {} was read: the map is as it was", path_));
+    throw Interrupted("work-stopped", fmt::format("stopped while {} was read: nothing was changed", path_));
   }
   const GdalMessages messages;
   OGRFeatureUniquePtr feature(next());

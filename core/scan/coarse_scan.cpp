@@ -21,7 +21,16 @@
 namespace roadfix {
 namespace {
 
-constexpr int kHeadingsTogether = static_cast<int>(ScanDirection().bins.size());
+/// Neighbours, which share means; one whose neighbour is not among them, as at the end of a range, is alone.
+std::vector<std::span<const int>> pairs_of(std::span<const int> bins) {
+  std::vector<std::span<const int>> pairs;
+  while (!bins.empty()) {
+    const bool together = bins.size() > 1 && bins[1] == bins[0] + 1;
+    pairs.push_back(bins.first(together ? 2 : 1));
+    bins = bins.subspan(pairs.back().size());
+  }
+  return pairs;
+}
 
 /// A total order, so that what is kept does not depend on the order of threads.
 bool is_better(const ScanPose& a, const ScanPose& b) {
@@ -48,15 +57,10 @@ class Scan {
     for (const int bin : request_.headings) bases.push_back(bin % half);
     std::ranges::sort(bases);
     bases.erase(std::unique(bases.begin(), bases.end()), bases.end());
-    const int count = static_cast<int>(bases.size());
-    const int pairs = (count + kHeadingsTogether - 1) / kHeadingsTogether;
-    squares_.assign(static_cast<std::size_t>(pairs), 0.0);
-    parallel_for(pairs, request_.threads, [&](int i) {
-      const int first = i * kHeadingsTogether;
-      scan_pair(std::span(bases).subspan(static_cast<std::size_t>(first),
-                                         static_cast<std::size_t>(std::min(kHeadingsTogether, count - first))),
-                squares_[static_cast<std::size_t>(i)]);
-    });
+    const std::vector<std::span<const int>> pairs = pairs_of(bases);
+    squares_.assign(pairs.size(), 0.0);
+    parallel_for(static_cast<int>(pairs.size()), request_.threads,
+                 [&](int i) { scan_pair(pairs[static_cast<std::size_t>(i)], squares_[static_cast<std::size_t>(i)]); });
     result_.score_square_sum = std::accumulate(squares_.begin(), squares_.end(), 0.0);
     result_.share =
         static_cast<double>(scanned_) / static_cast<double>(std::max<std::size_t>(1, request_.headings.size()));

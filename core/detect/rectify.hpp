@@ -24,8 +24,8 @@ struct RectifiedGround {
 
 /// The ground that the frame shows; pixels outside the frame are unobserved. A frame of finer pixels is averaged.
 /// `frame_observed` (CV_8UC1, empty = all) marks the frame's observed pixels. Throws what validate(),
-/// require_looking_down() and lens_of() do, LimitExceeded ("ground-too-large", and "image-too-large" for a frame that is
-/// too long to be warped) and InvalidInput ("frame-sees-no-ground").
+/// require_looking_down() and lens_of() do, LimitExceeded ("ground-too-large", and "image-too-large" for a frame that
+/// is too long to be warped) and InvalidInput ("frame-sees-no-ground").
 GroundView rectify(const cv::Mat& frame, const cv::Mat& frame_observed, const FrameCamera& camera,
                    const RectifiedGround& ground);
 

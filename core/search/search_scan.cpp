@@ -125,8 +125,8 @@ SearchScan::Maxima SearchScan::maxima() const {
 /// footprints. Many such poses would take the places of all others.
 void SearchScan::correct(std::vector<LatticePose>& poses) const {
   constexpr double kHighestScore = 1.0;
-  const auto first =
-      std::ranges::stable_partition(poses, [](const LatticePose& pose) { return pose.score <= kHighestScore; }).begin();
+  const auto first = std::stable_partition(poses.begin(), poses.end(),
+                                           [](const LatticePose& pose) { return pose.score <= kHighestScore; });
   std::vector<LatticePose> wrong(first, poses.end());
   if (wrong.empty() || !refine(levels_.coarse(), {.cells = 1, .bins = 0}, options_.deadline, wrong)) return;
   std::ranges::copy(wrong, first);

@@ -17,6 +17,12 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
+std::string shortened(std::string_view text, std::size_t most) {
+  std::string result(text.substr(0, most));
+  if (text.size() > most) result += "...";
+  return result;
+}
+
 std::string_view without_byte_order_mark(std::string_view text) {
   constexpr std::string_view kMark = "\xef\xbb\xbf";
   return text.starts_with(kMark) ? text.substr(kMark.size()) : text;

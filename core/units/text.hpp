@@ -16,6 +16,9 @@ std::string lower_case(std::string_view text);
 /// Without the spaces and tabs around it.
 std::string_view trimmed(std::string_view text);
 
+/// The first bytes and "..." where the text is longer: for messages that repeat what a client sent.
+std::string shortened(std::string_view text, std::size_t most);
+
 /// Without the mark that spreadsheets write before UTF-8.
 std::string_view without_byte_order_mark(std::string_view text);
 

@@ -20,10 +20,8 @@ using nlohmann::json;
 }
 
 std::string shown(const json& value) {
-  std::string text =
-      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', true, json::error_handler_t::replace);
-  if (text.size() > 40) text = text.substr(0, 40) + "...";
-  return text;
+  return shortened(
+      value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', true, json::error_handler_t::replace), 40);
 }
 
 double to_number(const std::string& name, const json& value) {

@@ -6,6 +6,7 @@
 
 #include "core/units/error.hpp"
 #include "core/units/names_once.hpp"
+#include "core/units/text.hpp"
 #include "server/http/errors.hpp"
 
 namespace roadfix::api {
@@ -40,11 +41,14 @@ void check_shape(std::string_view text, std::size_t max_values) {
 
 void refuse_second(const std::string& name) { throw http::given_twice(name); }
 
+/// It holds all of the text or number that cannot be read.
+constexpr std::size_t kLongestReason = 300;
+
 /// Without the library's own name of the error: "[json.exception.parse_error.101] parse error at line 1, ...".
 std::string reason_of(const json::exception& error) {
   const std::string text = error.what();
   const std::size_t end = text.starts_with('[') ? text.find("] ") : std::string::npos;
-  return end == std::string::npos ? text : text.substr(end + 2);
+  return shortened(end == std::string::npos ? text : text.substr(end + 2), kLongestReason);
 }
 
 }  // namespace

@@ -4,18 +4,26 @@
 
 #include <utility>
 
+#include "core/units/text.hpp"
+
 namespace roadfix::http {
+namespace {
+
+/// Longer than all names of fields that there are; those that clients make up may have megabytes.
+constexpr std::size_t kLongestField = 100;
+
+}  // namespace
 
 MethodNotAllowed::MethodNotAllowed(const std::string& method, std::string allowed)
     : InvalidInput("method-not-allowed", fmt::format("{} is not possible here; allowed: {}", method, allowed)),
       allowed_(std::move(allowed)) {}
 
-InvalidField::InvalidField(std::string code, std::string field, const std::string& message,
+InvalidField::InvalidField(std::string code, const std::string& field, const std::string& message,
                            std::optional<std::size_t> byte)
-    : InvalidInput(std::move(code), message), field_(std::move(field)), byte_(byte) {}
+    : InvalidInput(std::move(code), message), field_(shortened(field, kLongestField)), byte_(byte) {}
 
 InvalidField given_twice(const std::string& name) {
-  return {"duplicate-parameter", name, fmt::format("'{}' is given twice", name)};
+  return {"duplicate-parameter", name, fmt::format("'{}' is given twice", shortened(name, kLongestField))};
 }
 
 ClientGone::ClientGone() : Interrupted("client-gone", "the client hung up before its answer was ready") {}

@@ -22,7 +22,7 @@ class MethodNotAllowed : public InvalidInput {
 /// A field of the request (query parameter, header, member of a JSON body as "poses[3].lat") cannot be used.
 class InvalidField : public InvalidInput {
  public:
-  InvalidField(std::string code, std::string field, const std::string& message,
+  InvalidField(std::string code, const std::string& field, const std::string& message,
                std::optional<std::size_t> byte = std::nullopt);
   const std::string& field() const { return field_; }
   /// Position in the body, or in the text of the field where that is base64; where there is one.

@@ -20,6 +20,12 @@ TEST(Trimmed, TakesSpacesAndTabsFromBothEndsAlone) {
   EXPECT_EQ(trimmed(" \t"), "");
 }
 
+TEST(Shortened, SaysThatThereWasMore) {
+  EXPECT_EQ(shortened("abc", 3), "abc");
+  EXPECT_EQ(shortened("abcd", 3), "abc...");
+  EXPECT_EQ(shortened("", 3), "");
+}
+
 TEST(AsNumber, TakesAllOfTheTextOrNothing) {
   EXPECT_EQ(as_number<int>("-12"), -12);
   EXPECT_EQ(as_number<double>("2.5e3"), 2500.0);

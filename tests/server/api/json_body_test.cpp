@@ -55,5 +55,18 @@ TEST(JsonBody, SaysWhereJsonIsBroken) {
   }
 }
 
+TEST(JsonBody, IsNotRepeatedInWhatIsSaidOfIt) {
+  const std::string long_text(100'000, '1');
+  for (const std::string& text :
+       {"{\"a\":" + long_text + "}", "{\"a\":\"" + long_text, "{\"" + long_text + "\":1,\"" + long_text + "\":1}"}) {
+    try {
+      parse_json(text);
+      FAIL() << text.substr(0, 20);
+    } catch (const http::InvalidField& error) {
+      EXPECT_LT(std::string_view(error.what()).size() + error.field().size(), 1000U) << text.substr(0, 20);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace roadfix::api

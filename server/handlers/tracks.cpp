@@ -7,6 +7,7 @@
 
 #include "core/locate/tracker.hpp"
 #include "core/units/bytes.hpp"
+#include "core/units/error.hpp"
 #include "core/units/fnv.hpp"
 #include "core/units/json_text.hpp"
 #include "core/units/text.hpp"
@@ -85,13 +86,22 @@ json without_nulls(const json& asked) {
   return given;
 }
 
+/// Longer ones would take a multiple of their megabytes, and begin without a turn.
+json read_track(const http::Request& request) {
+  constexpr std::size_t kLongest = std::size_t{64} << 10;
+  if (request.body.size() > kLongest) {
+    throw LimitExceeded("json-too-long", fmt::format("the JSON has {} bytes; a track is begun with at most {}",
+                                                     request.body.size(), kLongest));
+  }
+  return without_nulls(api::parse_json(request.body, 1000));
+}
+
 http::Response post_track(const Service& service, const http::Request& request) {
   if (request.media_type() != "application/json") {
     throw http::InvalidField("unsupported-media-type", "Content-Type",
                              "a track is begun with a JSON object (Content-Type: application/json)");
   }
-  const json asked = without_nulls(api::parse_json(request.body, 1000));
-  const StoredTrack track = service.tracks.create(request.client, asked.dump(-1, ' ', true));
+  const StoredTrack track = service.tracks.create(request.client, read_track(request).dump(-1, ' ', true));
   http::Response response = json_response(status_json(service, track));
   response.status = 201;
   response.headers.emplace_back("Location", "/v1/tracks/" + track.id);

@@ -172,6 +172,7 @@ TEST_F(Tracks, RefuseToBeginWhatCannotBe) {
     return testing::refusal(client.Post("/v1/tracks", body.dump(), "application/json"));
   };
   EXPECT_EQ(refused({{"map", "nowhere"}}), "404 map-not-found");
+  EXPECT_EQ(refused({{"map", std::string(100'000, 'x')}}), "413 json-too-long");
   EXPECT_EQ(refused({{"lat", 10.0}, {"lon", 20.0}}), "422 prior-outside-map");
   EXPECT_EQ(refused({{"filter", "paper"}}), "400 unknown-field filter");
   EXPECT_EQ(refused({{"particles", 1'000'000'000}}), "400 parameter-out-of-range particles");

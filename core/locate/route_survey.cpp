@@ -113,11 +113,13 @@ class Pieces {
   std::int64_t count_;
 };
 
-std::int64_t first_piece(const Pieces& pieces, double from_m) {
-  const double first = std::round(from_m / pieces.piece_m());
-  if (first >= 0.0 && first < static_cast<double>(pieces.count())) return static_cast<std::int64_t>(first);
-  throw InvalidInput("parameter-out-of-range", fmt::format("{} m lie beyond the route, which is {:.0f} m long", from_m,
-                                                           pieces.piece_m() * static_cast<double>(pieces.count())));
+std::int64_t first_piece(const Pieces& pieces, double length_m, double from_m) {
+  if (!(from_m >= 0.0 && from_m < length_m)) {
+    throw InvalidInput("parameter-out-of-range",
+                       fmt::format("the route is {:.0f} m long: it cannot be begun {} m along it", length_m, from_m));
+  }
+  const auto nearest = static_cast<std::int64_t>(std::round(from_m / pieces.piece_m()));
+  return std::min(nearest, pieces.count() - 1);
 }
 
 /// What a camera sees along the way.
@@ -225,7 +227,7 @@ RouteSurvey survey_route(const MapView& map, const routes::Route& route, const R
   if (options.camera) camera.emplace(map, route, options);
   const Pieces pieces(way, usual_piece_m(way, camera, options), options.max_places);
   if (!pieces.any_within(map.extent)) refuse_outside(map);
-  RouteSurvey survey{way.length_m(), pieces.piece_m(), first_piece(pieces, options.from_m), {}};
+  RouteSurvey survey{way.length_m(), pieces.piece_m(), first_piece(pieces, way.length_m(), options.from_m), {}};
   const std::int64_t count = std::min(pieces.count() - survey.first, options.limit);
   std::vector<std::optional<RoutePiece>> found(static_cast<std::size_t>(count));
   std::int64_t done = 0;

@@ -105,6 +105,16 @@ routes::Route route_in(const http::Request& request) {
   return routes::parse_route(request.body);
 }
 
+/// All other ranges were looked at when they were read.
+RouteSurvey surveyed(const MapView& map, const routes::Route& route, const RouteSurveyOptions& options) {
+  try {
+    return survey_route(map, route, options);
+  } catch (const InvalidInput& error) {
+    if (error.code() != "parameter-out-of-range") throw;
+    throw http::InvalidField(error.code(), "from_m", error.what());
+  }
+}
+
 http::Response post_route(const Service& service, const http::Request& request) {
   const auto map = service.maps.find(request.path_parameters.at("map"));
   const api::Fields fields(request.query);
@@ -120,7 +130,7 @@ http::Response post_route(const Service& service, const http::Request& request) 
   options.query.fix = fix_options(service, request, hang_up.token());
   const SearchThreads::Share share(service.search_threads);
   options.query.fix.search.threads = share.threads();
-  const RouteSurvey found = survey_route(map->view, route, options);
+  const RouteSurvey found = surveyed(map->view, route, options);
   nlohmann::json answer = api::geojson_of(found);
   answer.update(api::summary_json(found));
   answer["complete"] = found.complete();

@@ -212,7 +212,7 @@ TEST_F(ServiceFix, SaysBeforeTheFlightWhereAlongARouteFramesWouldGiveAFix) {
       testing::refusal(client_.Post(url, R"({"type":"LineString","coordinates":[[1,1],[2,2]]})", "application/json")),
       "422 route-outside-map");
   EXPECT_EQ(testing::refusal(client_.Post(url + "&from_m=100000", line.dump(), "application/json")),
-            "422 parameter-out-of-range");
+            "400 parameter-out-of-range from_m");
   EXPECT_EQ(testing::refusal(client_.Post(url, std::string(2'000'000, ' '), "text/plain")), "413 route-too-long");
 }
 

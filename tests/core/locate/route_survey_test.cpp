@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <limits>
 
 #include "tests/core/locate/town_and_fields.hpp"
 #include "tests/support/code_of.hpp"
@@ -111,8 +112,23 @@ TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
   EXPECT_EQ(kinds_of(part), (std::vector{kBare, kUnknown}));
   EXPECT_FALSE(part.complete());
   EXPECT_NEAR(part.begin_m(2), 1200.0, 0.01) << "where to go on";
-  rest.from_m = 1600.0;
-  EXPECT_EQ(code_of([&] { survey_route(map, route, rest); }), "parameter-out-of-range");
+}
+
+TEST(RouteSurvey, BeginsAnywhereBeforeTheEndOfTheRouteAndNowhereBeyond) {
+  const MapView map = town_fields_and_unknown_ground();
+  const routes::Route route = route_of(map, {{0, 400}, {1600, 400}});
+  RouteSurveyOptions rest = options();
+  for (const double from_m : {1300.0, 1500.0, 1599.0}) {
+    rest.from_m = from_m;
+    const RouteSurvey last = survey_route(map, route, rest);
+    EXPECT_EQ(kinds_of(last), std::vector{kUnknown}) << from_m;
+    EXPECT_NEAR(last.begin_m(0), 1200.0, 0.01) << from_m;
+    EXPECT_TRUE(last.complete()) << from_m;
+  }
+  for (const double from_m : {-1.0, 1601.0, 1e9, std::numeric_limits<double>::infinity()}) {
+    rest.from_m = from_m;
+    EXPECT_EQ(code_of([&] { survey_route(map, route, rest); }), "parameter-out-of-range") << from_m;
+  }
 }
 
 TEST(RouteSurvey, TellsPlacesAlongTheWholeRouteWhereverItBegan) {

@@ -21,20 +21,6 @@ using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
 
-/// OGC WKT 1 of a UTM zone on WGS 84 as EPSG defines it.
-std::string wkt_of(const UtmZone& zone) {
-  return fmt::format(
-      R"(PROJCS["WGS 84 / UTM zone {}{}",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,)"
-      R"(AUTHORITY["EPSG","7030"]],AUTHORITY["EPSG","6326"]],PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],)"
-      R"(UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]],)"
-      R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",{}],)"
-      R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",{}],)"
-      R"(UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["Easting",EAST],AXIS["Northing",NORTH],)"
-      R"(AUTHORITY["EPSG","{}"]])",
-      zone.number(), zone.northern() ? 'N' : 'S', 6 * zone.number() - 183, zone.northern() ? 0 : 10'000'000,
-      zone.epsg());
-}
-
 void insert_settings(Connection& map, const MapSettings& settings) {
   const int epsg = settings.zone.epsg();
   Statement(map, "INSERT INTO gpkg_spatial_ref_sys VALUES (?1, ?2, 'EPSG', ?2, ?3, NULL)")
@@ -74,6 +60,19 @@ void write_map(const fs::path& path, const MapSettings& settings) {
 }
 
 }  // namespace
+
+std::string wkt_of(const UtmZone& zone) {
+  return fmt::format(
+      R"(PROJCS["WGS 84 / UTM zone {}{}",GEOGCS["WGS 84",DATUM["WGS_1984",SPHEROID["WGS 84",6378137,298.257223563,)"
+      R"(AUTHORITY["EPSG","7030"]],AUTHORITY["EPSG","6326"]],PRIMEM["Greenwich",0,AUTHORITY["EPSG","8901"]],)"
+      R"(UNIT["degree",0.0174532925199433,AUTHORITY["EPSG","9122"]],AUTHORITY["EPSG","4326"]],)"
+      R"(PROJECTION["Transverse_Mercator"],PARAMETER["latitude_of_origin",0],PARAMETER["central_meridian",{}],)"
+      R"(PARAMETER["scale_factor",0.9996],PARAMETER["false_easting",500000],PARAMETER["false_northing",{}],)"
+      R"(UNIT["metre",1,AUTHORITY["EPSG","9001"]],AXIS["Easting",EAST],AXIS["Northing",NORTH],)"
+      R"(AUTHORITY["EPSG","{}"]])",
+      zone.number(), zone.northern() ? 'N' : 'S', 6 * zone.number() - 183, zone.northern() ? 0 : 10'000'000,
+      zone.epsg());
+}
 
 void create_map(const fs::path& path, const MapSettings& settings) {
   if (!is_map_cell_size(settings.cell_m)) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/grid/lattice.hpp"
+#include "tiles/store/create_map.hpp"
 #include "tiles/store/map_file.hpp"
 #include "tiles/store/shift_table.hpp"
 #include "tiles/store/tile_matrix.hpp"
@@ -34,6 +35,22 @@ void check_lattice(Connection& map, const MapSettings& settings, std::vector<Map
   problems.push_back({"lattice-wrong",
                       "gpkg_tile_matrix_set and gpkg_tile_matrix are not those of the zone and cell size of the map. "
                       "Restore the map from a copy"});
+}
+
+/// As create_map writes them.
+void check_reference(Connection& map, const MapSettings& settings, std::vector<MapProblem>& problems) {
+  Statement contents(map,
+                     "SELECT count(*) FROM gpkg_contents c JOIN gpkg_spatial_ref_sys s ON s.srs_id = c.srs_id WHERE "
+                     "c.table_name = 'road_probability' AND c.data_type = '2d-gridded-coverage' AND c.srs_id = ?1 AND "
+                     "s.organization = 'EPSG' AND s.organization_coordsys_id = ?1 AND s.definition = ?2");
+  const std::string definition = wkt_of(settings.zone);
+  contents.with(settings.zone.epsg(), definition).step();
+  if (contents.integer(0) == 1) return;
+  problems.push_back(
+      {"reference-wrong", fmt::format("gpkg_contents and gpkg_spatial_ref_sys do not say that the map is a grid in "
+                                      "EPSG:{}: other programs show it elsewhere or as something else. Restore the map "
+                                      "from a copy",
+                                      settings.zone.epsg())});
 }
 
 /// As create_map writes it.
@@ -93,6 +110,7 @@ void check_shifts(Connection& map, std::vector<MapProblem>& problems) {
 std::vector<MapProblem> problems_of_description(Connection& map, const MapSettings& settings) {
   std::vector<MapProblem> problems;
   check_lattice(map, settings, problems);
+  check_reference(map, settings, problems);
   check_coverage(map, problems);
   check_tile_scales(map, problems);
   check_registration(map, problems);

@@ -12,7 +12,7 @@ namespace roadfix {
 /// What to do about most problems.
 inline constexpr const char* kRepair = "Repair it with roadfix verify --repair, or restore the map from a copy";
 
-/// Of lattice, coverage, scales of the tiles and registration errors.
+/// Of lattice, reference system, coverage, scales of the tiles and registration errors.
 std::vector<MapProblem> problems_of_description(sqlite::Connection& map, const MapSettings& settings);
 
 }  // namespace roadfix

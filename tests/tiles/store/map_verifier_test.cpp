@@ -123,6 +123,22 @@ TEST_F(MapVerifier, FindsADescriptionByWhichOtherProgramsMisreadTheMap) {
   EXPECT_THAT(codes_after("DELETE FROM gpkg_2d_gridded_coverage_ancillary"), ElementsAre("coverage-wrong"));
 }
 
+TEST_F(MapVerifier, FindsAReferenceByWhichOtherProgramsShowTheMapElsewhere) {
+  for (const std::string change :
+       {"gpkg_contents SET srs_id = 4326", "gpkg_contents SET data_type = 'tiles'",
+        "gpkg_spatial_ref_sys SET organization_coordsys_id = 32636 WHERE srs_id = 32637",
+        "gpkg_spatial_ref_sys SET organization = 'NONE' WHERE srs_id = 32637",
+        "gpkg_spatial_ref_sys SET definition = replace(definition, '\"central_meridian\",39', "
+        "'\"central_meridian\",33') WHERE srs_id = 32637"}) {
+    const fs::path copy = folder / "copy.gpkg";
+    fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
+    testing::open_sqlite(copy).execute(("UPDATE " + change).c_str());
+    const std::vector<MapProblem> problems = verify_map(copy).problems;
+    ASSERT_EQ(problems.size(), 1U) << change;
+    EXPECT_EQ(problems.front().code, "reference-wrong") << change;
+  }
+}
+
 TEST_F(MapVerifier, FindsRegistrationErrorsThatNoSourceHas) {
   for (const std::string sigma : {"0", "-2.5", "9e999", "'much'"}) {
     const std::string change = "UPDATE roadfix_sources SET registration_sigma_m = " + sigma;

@@ -50,9 +50,16 @@ std::optional<Header> header_of(sqlite3_file* file) {
   return header;
 }
 
+/// What the operating system said: SQLite itself does not pass that on where a commit fails.
+int system_error(sqlite3* handle) {
+  int reason = sqlite3_system_errno(handle);
+  if (reason == 0) sqlite3_file_control(handle, "main", SQLITE_FCNTL_LAST_ERRNO, &reason);
+  return reason;
+}
+
 /// SQLite's message, and what the operating system said where that refused to read or write.
 std::string explained(sqlite3* handle, int code, const std::string& message) {
-  const int reason = (code & 0xff) == SQLITE_IOERR ? sqlite3_system_errno(handle) : 0;
+  const int reason = (code & 0xff) == SQLITE_IOERR ? system_error(handle) : 0;
   return reason == 0 ? message : message + ": " + std::system_category().message(reason);
 }
 

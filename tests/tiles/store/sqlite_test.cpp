@@ -6,6 +6,7 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "tests/support/room.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::sqlite {
@@ -53,15 +54,30 @@ class Sqlite : public ::testing::Test {
   fs::path path;
 };
 
+std::exception_ptr detail_of(const fs::path& /*file*/, Failure, const std::string& detail) {
+  return std::make_exception_ptr(std::runtime_error(detail));
+}
+
 TEST(SqliteFile, SaysWhyItCannotBeOpened) {
-  const auto detail_of = [](const fs::path&, Failure, const std::string& detail) {
-    return std::make_exception_ptr(std::runtime_error(detail));
-  };
   try {
     const Connection none("no/such/folder/file.sqlite", Access::kCreate, detail_of);
     FAIL();
   } catch (const std::runtime_error& error) {
     EXPECT_STREQ(error.what(), "No such file or directory");
+  }
+}
+
+/// As on a memory card whose file system has no files of more than 4 GB, or where a quota is used up.
+TEST(SqliteFile, SaysWhyItCannotBeWrittenTo) {
+  const testing::TemporaryFolder folder;
+  Connection file(folder / "file.sqlite", Access::kCreate, detail_of);
+  file.execute("CREATE TABLE t (v BLOB)");
+  const testing::Room room(20'000);
+  try {
+    file.execute("INSERT INTO t VALUES (zeroblob(50000))");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "disk I/O error: File too large");
   }
 }
 

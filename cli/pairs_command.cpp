@@ -72,6 +72,12 @@ Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop)
   return {zone, arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(source), gsd_m};
 }
 
+/// Also of "my-city/" and of ".".
+std::string name_of(const fs::path& folder) {
+  const fs::path path = fs::absolute(folder).lexically_normal();
+  return (path.has_filename() ? path : path.parent_path()).filename().string();
+}
+
 /// Says how the pairs are to be read, as models/README.md describes it, unless it is there: users add to it.
 void describe_pairs(const fs::path& folder, double gsd_m) {
   const fs::path file = folder / "pairs.json";
@@ -84,12 +90,8 @@ void describe_pairs(const fs::path& folder, double gsd_m) {
                                    "name another folder, or the same --gsd",
                                    file.string(), gsd_m));
   }
-  const nlohmann::ordered_json set{{"name", fs::absolute(folder).lexically_normal().filename().string()},
-                                   {"images", "images"},
-                                   {"masks", "masks"},
-                                   {"gsd_m", gsd_m},
-                                   {"label", "surface"},
-                                   {"nodata", "black"}};
+  const nlohmann::ordered_json set{{"name", name_of(folder)}, {"images", "images"}, {"masks", "masks"},
+                                   {"gsd_m", gsd_m},          {"label", "surface"}, {"nodata", "black"}};
   write_file(file, nlohmann::ordered_json{{"sets", {set}}}.dump(2) + "\n");
 }
 

@@ -63,6 +63,15 @@ TEST_F(PairsCommand, WritesPicturesAndMasksOfEqualNamesAndSaysTheirScale) {
   EXPECT_EQ(set["nodata"], "black");
 }
 
+TEST_F(PairsCommand, NamesTheSetAfterItsFolderHoweverThatIsWritten) {
+  for (const std::string written : {"mine", "mine/", "mine/."}) {
+    ASSERT_EQ(pairs("town/pre.tif", "town/roads.geojson", written).code, 0);
+    EXPECT_EQ(nlohmann::json::parse(testing::text_of(folder / "mine/pairs.json"))["sets"][0]["name"], "mine")
+        << written;
+    std::filesystem::remove_all(folder / "mine");
+  }
+}
+
 TEST_F(PairsCommand, AddsAnotherDayUnderNamesThatSayTheSameGround) {
   ASSERT_EQ(pairs("town/pre.tif", "town/roads.geojson", "mine", "--name city_pre").code, 0);
   const std::set<std::string> before = names_in("mine/images");

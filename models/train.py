@@ -24,7 +24,7 @@ def arguments():
     parser.add_argument("--pairs", action="append", default=[], metavar="DIR[=GSD_M][:SHARE]",
                         help="own pairs: DIR/images and DIR/masks with equal file stems, and their share of the crops "
                              "(against those of the manifest); may be given again. Of a folder that roadfix pairs wrote "
-                             "pairs.json says the scale")
+                             "pairs.json says the scale and what was not seen")
     parser.add_argument("--only-pairs", action="store_true", help="train on --pairs alone")
     parser.add_argument("--out", default=Path("build/roadnet"), type=Path, help="folder for checkpoints (%(default)s)")
     parser.add_argument("--begin-with", type=Path, metavar="FILE", help="weights of a checkpoint or of an exported network (.onnx) instead of random ones")
@@ -77,6 +77,28 @@ def parts_of(text):
     return folder or text, "", share
 
 
+def number(text, told):
+    try:
+        return float(told)
+    except ValueError:
+        raise SystemExit(f"--pairs {text}: '{told}' is no number; write DIR, DIR:SHARE, DIR=GSD_M or DIR=GSD_M:SHARE") from None
+
+
+def sets_of(text, folder, gsd):
+    """As pairs.json says where there is one: by the scale alone, what is black in its pictures would count as seen."""
+    if not gsd:
+        return list(described_sets(folder))
+    gsd_m = number(text, gsd)
+    if not (folder / "pairs.json").is_file():
+        return [SetOptions(name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=gsd_m, ignore_band_m=1.0)]
+    sets = list(described_sets(folder))
+    for options in sets:
+        if options.gsd_m != gsd_m:
+            raise SystemExit(f"--pairs {text}: {folder / 'pairs.json'} says that its pictures have {options.gsd_m} m per pixel: "
+                             "leave the scale out")
+    return sets
+
+
 def own_sets(texts):
     for text in texts:
         folder, gsd, share = parts_of(text)
@@ -84,10 +106,8 @@ def own_sets(texts):
         for part in ("images", "masks"):
             if not (folder / part).is_dir():
                 raise SystemExit(f"--pairs {text}: there is no folder {folder / part}")
-        sets = described_sets(folder) if not gsd else [SetOptions(
-            name=folder.name, images=str(folder / "images"), masks=str(folder / "masks"), gsd_m=float(gsd), ignore_band_m=1.0)]
-        for options in sets:
-            yield replace(options, share=float(share)) if share else options
+        for options in sets_of(text, folder, gsd):
+            yield replace(options, share=number(text, share)) if share else options
 
 
 def main():

@@ -84,8 +84,24 @@ class Training(unittest.TestCase):
             [found] = train.own_sets([str(told)])
             self.assertEqual((found.gsd_m, found.nodata, found.share), (0.5, "black", share))
             self.assertEqual(len(data.load_pairs(found, self.folder / "elsewhere")[0]), 7, "one of six is held out")
-        [found] = train.own_sets([f"{folder}=1.5:0.2"])
-        self.assertEqual((found.gsd_m, found.nodata, found.share), (1.5, "", 0.2), "as the command says")
+
+    def test_a_scale_that_is_told_too_leaves_unseen_what_roadfix_wrote_as_unseen(self):
+        self.describe("pairs")
+        folder = self.folder / "pairs"
+        [found] = train.own_sets([f"{folder}=0.5:0.2"])
+        self.assertEqual((found.gsd_m, found.nodata, found.share), (0.5, "black", 0.2))
+        with self.assertRaisesRegex(SystemExit, "pairs.json says .* 0.5 m per pixel"):
+            list(train.own_sets([f"{folder}=1.5:0.2"]))
+
+    def test_a_scale_of_pairs_that_nobody_described_is_as_the_command_says(self):
+        [found] = train.own_sets([f"{self.folder / 'pairs'}=1.5:0.2"])
+        self.assertEqual((found.gsd_m, found.nodata, found.share), (1.5, "", 0.2))
+
+    def test_what_is_no_number_in_the_pairs_of_the_command_is_named(self):
+        for told in ("=half", "=0.5:much", ":much"):
+            self.describe("pairs")
+            with self.assertRaisesRegex(SystemExit, "(half|much)' is no number"):
+                list(train.own_sets([f"{self.folder / 'pairs'}{told}"]))
 
     def test_pairs_without_a_scale_are_refused(self):
         for told, message in ((self.folder / "pairs", "pairs.json"), (self.folder / "absent", "no folder")):

@@ -4,7 +4,6 @@ import struct
 HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
 CRC_EXTRA = 158         # of both
 COMMAND_WRAP_S = 250.0  # the time of sending of command_int starts anew
-MOST_US = (1 << 32) - 1
 
 #: Where the two are in the payload: times of sending and processing, in which unit.
 TIMES = {"global_position_sensor": ("<QI", 1e-6), "command_int": ("<ff", 1.0)}
@@ -25,7 +24,7 @@ def with_age(packet_format, packet, age_s):
     if packet_format == "command_int":
         times = (sent - processing + age_s) % COMMAND_WRAP_S, age_s
     else:
-        age_us = min(round(1e6 * age_s), MOST_US)
+        age_us = round(1e6 * age_s)
         times = sent - processing + age_us, age_us
     payload = (struct.pack(layout, *times) + payload[size:]).rstrip(b"\0") or b"\0"
     checked = bytes([len(payload)]) + packet[2:HEAD] + payload

@@ -38,6 +38,7 @@ class Heights:
         self._above_takeoff = Told()
         self._above_sea = {"ALTITUDE": Told(), "VFR_HUD": Told()}  # the better one first
         self._knew_ground = None
+        self._was_by_pressure = False  # the last height above the sea
         self._said = set()  # once
 
     def tell_above_ground(self, height_m, came):
@@ -67,11 +68,14 @@ class Heights:
         self._above_sea[message].tell(height_m if is_known else math.nan, came)
 
     def say_of_pressure(self, height_m, by_pressure_m):
-        """Of a height above the sea and that of the barometer alone, which PX4 tells for it while it has no origin."""
-        if height_m == by_pressure_m:
+        """Of a height above the sea and that of the barometer alone, which PX4 tells for it while it has no origin. One
+        alone may be equal by chance."""
+        is_by_pressure = height_m == by_pressure_m
+        if is_by_pressure and self._was_by_pressure:
             self._say_once("the height above the sea is that of the barometer alone, 8 m off for each hPa by which the "
                            "air pressure is not what the autopilot takes it for (SENS_BARO_QNH): it has no origin yet "
                            "(SET_GPS_GLOBAL_ORIGIN)")
+        self._was_by_pressure = is_by_pressure
 
     def agl_m(self, when):
         """None where nothing is known."""

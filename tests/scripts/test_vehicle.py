@@ -168,10 +168,11 @@ class Flights(unittest.TestCase):
         self.assertEqual(words.getvalue().count("no origin yet (SET_GPS_GLOBAL_ORIGIN)"), 1)
 
     def test_are_said_to_be_as_high_as_the_barometer_alone_tells_before_the_autopilot_has_an_origin(self):
-        for by_pressure_m, is_said in (((705.25, 706.5), 1), ((705.5, 706.75), 0), ((math.nan, math.nan), 0)):
+        for by_pressure_m, is_said in (((705.25, 706.0, 706.5), 1), ((705.5, 706.25, 706.75), 0),
+                                       ((705.25, 706.25, 706.5), 0), ((math.nan, math.nan, math.nan), 0)):
             vehicle = Vehicle()
             with said() as words:
-                for came, above_sea_m, barometer_m in zip((1.0, 2.0), (705.25, 706.5), by_pressure_m):
+                for came, above_sea_m, barometer_m in zip((1.0, 2.0, 3.0), (705.25, 706.0, 706.5), by_pressure_m):
                     vehicle.hear("ALTITUDE", altitude(80.0, above_sea_m, barometer_m), came)
             self.assertEqual(words.getvalue().count("barometer alone"), is_said, by_pressure_m)
             self.assertEqual(vehicle.alt_m(vehicle.heard), 706.5)
@@ -290,7 +291,6 @@ class Flights(unittest.TestCase):
             turn(vehicle, 0.1 * tenth)
             move(vehicle, 0.1 * tenth, north=10.0 if tenth < 120 else math.nan)
         self.assertIsNone(vehicle.seen_at(15.0)[0])
-
 
     def test_have_moved_nobody_knows_where_while_the_estimator_knows_no_velocity(self):
         for status in ("ESTIMATOR_STATUS", "EKF_STATUS_REPORT"):

@@ -79,20 +79,23 @@ std::string name_of(const fs::path& folder) {
 }
 
 /// Says how the pairs are to be read, as models/README.md describes it, unless it is there: users add to it.
-void describe_pairs(const fs::path& folder, double gsd_m) {
+void describe_pairs(const fs::path& folder, double gsd_m, int side_px) {
   const fs::path file = folder / "pairs.json";
   if (const std::optional<std::string> text = read_file(file)) {
+    using Place = nlohmann::json::json_pointer;
     const nlohmann::json known = nlohmann::json::parse(*text, nullptr, false);
-    const nlohmann::json::json_pointer place("/sets/0/gsd_m");
-    if (!known.is_discarded() && known.contains(place) && known[place] == gsd_m) return;
-    throw InvalidInput("pairs-of-another-scale",
-                       fmt::format("{} does not say that its pairs have pixels of {} m, as those that are asked for: "
-                                   "name another folder, or the same --gsd",
-                                   file.string(), gsd_m));
+    const auto says = [&](const Place& place, double value) {
+      return !known.is_discarded() && known.contains(place) && known[place] == value;
+    };
+    if (says(Place("/sets/0/gsd_m"), gsd_m) && says(Place("/side_px"), side_px)) return;
+    throw InvalidInput("pairs-of-another-cut",
+                       fmt::format("{} does not say that its pairs are squares of {} pixels of {} m, as those that are "
+                                   "asked for: name another folder, or give the same --side-px and --gsd",
+                                   file.string(), side_px, gsd_m));
   }
   const nlohmann::ordered_json set{{"name", name_of(folder)}, {"images", "images"}, {"masks", "masks"},
                                    {"gsd_m", gsd_m},          {"label", "surface"}, {"nodata", "black"}};
-  write_file(file, nlohmann::ordered_json{{"sets", {set}}}.dump(2) + "\n");
+  write_file(file, nlohmann::ordered_json{{"side_px", side_px}, {"sets", {set}}}.dump(2) + "\n");
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) {
@@ -149,7 +152,7 @@ void run_pairs(const PairsArguments& arguments) {
   if (!squares.empty()) {
     require_folder(folder / "images");
     require_folder(folder / "masks");
-    describe_pairs(folder, ground.gsd_m);
+    describe_pairs(folder, ground.gsd_m, arguments.side_px);
   }
   const Written written = write_pairs(arguments, ground, squares, stop);
   if (stop.stop_requested()) {

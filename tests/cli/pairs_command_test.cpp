@@ -81,11 +81,13 @@ TEST_F(PairsCommand, AddsAnotherDayUnderNamesThatSayTheSameGround) {
   EXPECT_EQ(names_in("mine/images"), both);
 }
 
-TEST_F(PairsCommand, RefusesWhatWouldMixScalesOrHoldNothing) {
+TEST_F(PairsCommand, RefusesWhatWouldMixSquaresOrHoldNothing) {
   ASSERT_EQ(pairs("town/pre.tif", "town/roads.geojson", "mine").code, 0);
-  const ProgramResult coarser = pairs("town/pre.tif", "town/roads.geojson", "mine", "--gsd 1");
-  EXPECT_EQ(coarser.code, 1);
-  EXPECT_THAT(coarser.err, HasSubstr("[pairs-of-another-scale]"));
+  for (const char* another : {"--gsd 1", "--side-px 512"}) {
+    const ProgramResult cut_otherwise = pairs("town/pre.tif", "town/roads.geojson", "mine", another);
+    EXPECT_EQ(cut_otherwise.code, 1) << another;
+    EXPECT_THAT(cut_otherwise.err, HasSubstr("[pairs-of-another-cut]")) << another;
+  }
 
   std::ofstream(folder / "far.geojson")
       << R"({"type":"FeatureCollection","features":[{"type":"Feature","properties":{},"geometry":)"

@@ -42,7 +42,6 @@ std::vector<GridGeometry> pair_squares(const Mosaic& imagery, const CellSource& 
   const GridBox box = intersection(imagery.extent(), roads.extent());
   if (box.empty()) return squares;
   const GridGeometry pixels = GridGeometry::covering(box, gsd_m);
-  if (std::max(pixels.cols, pixels.rows) <= side_px) return {pixels};
   const auto first_of = [side_px](int pixel) { return floor_div(pixel, side_px) * side_px; };
   for (int row = first_of(pixels.origin.row); row < pixels.origin.row + pixels.rows; row += side_px) {
     for (int col = first_of(pixels.origin.col); col < pixels.origin.col + pixels.cols; col += side_px) {

@@ -99,14 +99,6 @@ TEST_F(TrainingPairs, AreOfNoGroundWhereRoadsLieElsewhere) {
   EXPECT_TRUE(pair_squares(seen, *open_road_vectors({path}, {}, RoadRules(), kZone, kGsdM), kGsdM, 256).empty());
 }
 
-TEST_F(TrainingPairs, AreOneOfGroundThatFitsIntoIt) {
-  const Mosaic seen = imagery();
-  const auto roads = street(400.0);
-  const std::vector<GridGeometry> whole = pair_squares(seen, *roads, kGsdM, 512);
-  ASSERT_EQ(whole.size(), 1U);
-  EXPECT_EQ(whole[0], GridGeometry::covering(seen.extent(), kGsdM));
-}
-
 TEST(PairScale, IsAboutThatOfTheImagery) {
   for (const auto& [imagery_m, pairs_m] :
        {std::pair{0.1, 0.5}, {0.5, 0.5}, {0.6, 0.5}, {0.8, 1.0}, {1.0, 1.0}, {2.5, 2.0}}) {

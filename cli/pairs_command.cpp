@@ -50,14 +50,8 @@ struct Ground {
   double gsd_m = 0.0;
 };
 
-Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop) {
-  const SourceFiles pictures = find_source(arguments.imagery, SourceContent::kImagery);
-  RasterOptions raster = arguments.raster;
-  if (!arguments.collar.empty()) raster.collar = parse_colour(arguments.collar);
-  const UtmZone zone = zone_of_image(pictures.paths.front(), raster);
-  auto imagery = std::make_unique<Mosaic>(pictures.paths, raster, ValueRule::kPicture, zone);
-  const double gsd_m = arguments.gsd_m.value_or(pair_gsd_m(imagery->gsd_m()));
-
+std::unique_ptr<CellSource> open_roads(const PairsArguments& arguments, const MapSettings& lattice,
+                                       const std::stop_token& stop) {
   SourceRequest roads;
   roads.files = find_source(arguments.roads, SourceContent::kRoads, arguments.lines.lines.layer);
   roads.vectors = arguments.lines.lines;
@@ -67,9 +61,19 @@ Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop)
   Progress reading(fmt::format("reading {}", roads.files.name), "%", 0.1);
   roads.vectors.on_reading = reading.updates_if_long();
   roads.vectors.stop = stop;
-  std::unique_ptr<CellSource> source = open_source(roads, {zone, gsd_m}, nullptr);
-  for (const std::string& note : source->summary().notes) fmt::print(stderr, "note: {}\n", note);
-  return {zone, arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(source), gsd_m};
+  return open_source(roads, lattice, nullptr);
+}
+
+Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop) {
+  const SourceFiles pictures = find_source(arguments.imagery, SourceContent::kImagery);
+  RasterOptions raster = arguments.raster;
+  if (!arguments.collar.empty()) raster.collar = parse_colour(arguments.collar);
+  const UtmZone zone = zone_of_image(pictures.paths.front(), raster);
+  auto imagery = std::make_unique<Mosaic>(pictures.paths, raster, ValueRule::kPicture, zone);
+  const double gsd_m = arguments.gsd_m.value_or(pair_gsd_m(imagery->gsd_m()));
+  std::unique_ptr<CellSource> roads = open_roads(arguments, {zone, gsd_m}, stop);
+  for (const std::string& note : roads->summary().notes) fmt::print(stderr, "note: {}\n", note);
+  return {zone, arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(roads), gsd_m};
 }
 
 /// Also of "my-city/" and of ".".
@@ -142,31 +146,32 @@ Written write_pairs(const PairsArguments& arguments, const Ground& ground, const
   return written;
 }
 
+[[noreturn]] void refuse_without_ground(const PairsArguments& arguments) {
+  throw InvalidInput("pairs-without-ground",
+                     fmt::format("{} and {} share no ground of which both say something: look at where they are "
+                                 "(gdalinfo, ogrinfo -so -al), and name their reference systems with --crs and "
+                                 "--roads-crs if the files have wrong ones",
+                                 arguments.imagery, arguments.roads));
+}
+
 void run_pairs(const PairsArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   require_name(arguments.folder);
   const Ground ground = open_ground(arguments, stop);
   const std::vector<GridGeometry> squares =
       pair_squares(*ground.imagery, *ground.roads, ground.gsd_m, arguments.side_px);
+  if (squares.empty()) refuse_without_ground(arguments);
   const fs::path folder(arguments.folder);
-  if (!squares.empty()) {
-    require_folder(folder / "images");
-    require_folder(folder / "masks");
-    describe_pairs(folder, ground.gsd_m, arguments.side_px);
-  }
+  require_folder(folder / "images");
+  require_folder(folder / "masks");
+  describe_pairs(folder, ground.gsd_m, arguments.side_px);
   const Written written = write_pairs(arguments, ground, squares, stop);
   if (stop.stop_requested()) {
     throw Interrupted("work-stopped", fmt::format("stopped after {} pairs, which are whole. The same command begins "
                                                   "anew and writes them again",
                                                   written.pairs));
   }
-  if (written.pairs == 0) {
-    throw InvalidInput("pairs-without-ground",
-                       fmt::format("{} and {} share no ground of which both say something: look at where they are "
-                                   "(gdalinfo, ogrinfo -so -al), and name their reference systems with --crs and "
-                                   "--roads-crs if the files have wrong ones",
-                                   arguments.imagery, arguments.roads));
-  }
+  if (written.pairs == 0) refuse_without_ground(arguments);
   fmt::print("{}: {} pairs in pixels of {} m, {:.2f} km2 seen, {:.1f} % of it road\n", arguments.folder, written.pairs,
              ground.gsd_m, written.seen_km2, 100.0 * written.road_km2 / written.seen_km2);
 }
@@ -179,9 +184,8 @@ void add_pairs_command(CLI::App& app) {
   command->footer(
       "Examples: roadfix pairs city.tif roads.geojson my-city\n"
       "          python3 models/train.py --pairs my-city --only-pairs --out build/mine      (models/README.md)\n"
-      "Writes images/ and masks/ of equal names and pairs.json; what imagery or roads do not cover is black. Imagery "
-      "of "
-      "several places, or of one on several days (NAME_pre, NAME_post), may go into one folder.");
+      "Writes images/ and masks/ of equal names and pairs.json; what imagery or roads do not cover is black. "
+      "Imagery of several places, or of one on several days (NAME_pre, NAME_post), may go into one folder.");
   const auto a = std::make_shared<PairsArguments>();
   command->add_option("imagery", a->imagery, "Georeferenced imagery: a file, a folder or ZIP archive of files")
       ->required();

@@ -11,8 +11,8 @@
 namespace roadfix {
 namespace {
 
-constexpr std::uint8_t kDarkest =
-    4;  // of ground that was seen: what is darker counts as not seen where networks are trained
+/// Of ground that was seen: what is darker counts as not seen where networks are trained.
+constexpr std::uint8_t kDarkest = 4;
 
 /// 255 where a cell is, by `is`.
 cv::Mat marked(const CellArray& cells, bool (*is)(Cell)) {

@@ -43,7 +43,6 @@ struct PairsArguments {
 
 /// Both sides of the pairs, and what they are told to be.
 struct Ground {
-  UtmZone zone;
   std::string name;
   std::unique_ptr<Mosaic> imagery;
   std::unique_ptr<CellSource> roads;
@@ -73,7 +72,7 @@ Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop)
   const double gsd_m = arguments.gsd_m.value_or(pair_gsd_m(imagery->gsd_m()));
   std::unique_ptr<CellSource> roads = open_roads(arguments, {zone, gsd_m}, stop);
   for (const std::string& note : roads->summary().notes) fmt::print(stderr, "note: {}\n", note);
-  return {zone, arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(roads), gsd_m};
+  return {arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(roads), gsd_m};
 }
 
 /// Also of "my-city/" and of ".".

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -81,24 +82,31 @@ std::string name_of(const fs::path& folder) {
   return (path.has_filename() ? path : path.parent_path()).filename().string();
 }
 
+fs::path description_in(const fs::path& folder) { return folder / "pairs.json"; }
+
+void require_same_cut(const fs::path& folder, double gsd_m, int side_px) {
+  const fs::path file = description_in(folder);
+  const std::optional<std::string> text = read_file(file);
+  if (!text) return;
+  using Place = nlohmann::json::json_pointer;
+  const nlohmann::json known = nlohmann::json::parse(*text, nullptr, false);
+  const auto says = [&](const Place& place, double value) {
+    return !known.is_discarded() && known.contains(place) && known[place] == value;
+  };
+  if (says(Place("/sets/0/gsd_m"), gsd_m) && says(Place("/side_px"), side_px)) return;
+  throw InvalidInput("pairs-of-another-cut",
+                     fmt::format("{} does not say that its pairs are squares of {} pixels of {} m, as those that are "
+                                 "asked for: name another folder, or give the same --side-px and --gsd",
+                                 file.string(), side_px, gsd_m));
+}
+
 /// Says how the pairs are to be read, as models/README.md describes it, unless it is there: users add to it.
 void describe_pairs(const fs::path& folder, double gsd_m, int side_px) {
-  const fs::path file = folder / "pairs.json";
-  if (const std::optional<std::string> text = read_file(file)) {
-    using Place = nlohmann::json::json_pointer;
-    const nlohmann::json known = nlohmann::json::parse(*text, nullptr, false);
-    const auto says = [&](const Place& place, double value) {
-      return !known.is_discarded() && known.contains(place) && known[place] == value;
-    };
-    if (says(Place("/sets/0/gsd_m"), gsd_m) && says(Place("/side_px"), side_px)) return;
-    throw InvalidInput("pairs-of-another-cut",
-                       fmt::format("{} does not say that its pairs are squares of {} pixels of {} m, as those that are "
-                                   "asked for: name another folder, or give the same --side-px and --gsd",
-                                   file.string(), side_px, gsd_m));
-  }
+  if (fs::exists(description_in(folder))) return;
   const nlohmann::ordered_json set{{"name", name_of(folder)}, {"images", "images"}, {"masks", "masks"},
                                    {"gsd_m", gsd_m},          {"label", "surface"}, {"nodata", "black"}};
-  write_file(file, nlohmann::ordered_json{{"side_px", side_px}, {"sets", {set}}}.dump(2) + "\n");
+  const nlohmann::ordered_json all{{"side_px", side_px}, {"sets", {set}}};
+  write_file(description_in(folder), all.dump(2) + "\n");
 }
 
 void write_png(const fs::path& file, const cv::Mat& image) {
@@ -107,8 +115,11 @@ void write_png(const fs::path& file, const cv::Mat& image) {
   write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
 }
 
+constexpr double kLeastSeen = 0.02;  // of a square that is written
+
 struct Written {
   std::int64_t pairs = 0;
+  double most_seen = 0.0;  ///< of a square
   double seen_km2 = 0.0;
   double road_km2 = 0.0;
 };
@@ -117,9 +128,10 @@ struct Written {
 /// names up to that of the imagery.
 Written write_pairs(const PairsArguments& arguments, const Ground& ground, const std::vector<GridGeometry>& squares,
                     const std::stop_token& stop) {
-  constexpr double kLeastSeen = 0.02;
   Progress progress(ground.name, "MP", static_cast<double>(arguments.side_px) * arguments.side_px / 1e6);
+  const fs::path folder(arguments.folder);
   Written written;
+  std::once_flag described;
   std::mutex mutex;
   std::int64_t done = 0;
   const auto total = static_cast<int>(squares.size());
@@ -131,10 +143,12 @@ Written write_pairs(const PairsArguments& arguments, const Ground& ground, const
     const GridBox box = square.box();
     if (pair.seen >= kLeastSeen) {
       const std::string name = fmt::format("{:.0f}_{:.0f}_{}.png", box.min.east_m, box.max.north_m, ground.name);
-      write_png(fs::path(arguments.folder) / "images" / name, pair.picture);
-      write_png(fs::path(arguments.folder) / "masks" / name, pair.mask);
+      std::call_once(described, [&] { describe_pairs(folder, ground.gsd_m, arguments.side_px); });
+      write_png(folder / "images" / name, pair.picture);
+      write_png(folder / "masks" / name, pair.mask);
     }
     const std::lock_guard lock(mutex);
+    written.most_seen = std::max(written.most_seen, pair.seen);
     if (pair.seen >= kLeastSeen) {
       ++written.pairs;
       written.seen_km2 += pair.seen * box.width_m() * box.height_m() / 1e6;
@@ -153,6 +167,15 @@ Written write_pairs(const PairsArguments& arguments, const Ground& ground, const
                                  arguments.imagery, arguments.roads));
 }
 
+[[noreturn]] void refuse_little_ground(const PairsArguments& arguments, double gsd_m) {
+  throw InvalidInput(
+      "pairs-without-ground",
+      fmt::format("{} and {} share too little ground: less than {:.0f} % of each square of {:.6g} m. Give "
+                  "smaller squares (--side-px, now {})",
+                  arguments.imagery, arguments.roads, 100.0 * kLeastSeen, arguments.side_px * gsd_m,
+                  arguments.side_px));
+}
+
 void run_pairs(const PairsArguments& arguments) {
   const std::stop_token stop = stop_on_signals();
   require_name(arguments.folder);
@@ -163,14 +186,15 @@ void run_pairs(const PairsArguments& arguments) {
   const fs::path folder(arguments.folder);
   require_folder(folder / "images");
   require_folder(folder / "masks");
-  describe_pairs(folder, ground.gsd_m, arguments.side_px);
+  require_same_cut(folder, ground.gsd_m, arguments.side_px);
   const Written written = write_pairs(arguments, ground, squares, stop);
   if (stop.stop_requested()) {
     throw Interrupted("work-stopped", fmt::format("stopped after {} pairs, which are whole. The same command begins "
                                                   "anew and writes them again",
                                                   written.pairs));
   }
-  if (written.pairs == 0) refuse_without_ground(arguments);
+  if (written.most_seen == 0.0) refuse_without_ground(arguments);
+  if (written.pairs == 0) refuse_little_ground(arguments, ground.gsd_m);
   fmt::print("{}: {} pairs in pixels of {} m, {:.2f} km2 seen, {:.1f} % of it road\n", arguments.folder, written.pairs,
              ground.gsd_m, written.seen_km2, 100.0 * written.road_km2 / written.seen_km2);
 }

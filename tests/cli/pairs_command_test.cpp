@@ -103,5 +103,12 @@ TEST_F(PairsCommand, RefusesWhatWouldMixSquaresOrHoldNothing) {
   EXPECT_THAT(width.err, HasSubstr("[option-without-effect]"));
 }
 
+TEST_F(PairsCommand, AsksForSmallerSquaresWhereLittleOfEachIsSeen) {
+  const ProgramResult little = pairs("town/pre.tif", "town/roads.geojson", "mine", "--gsd 2 --side-px 4096");
+  EXPECT_EQ(little.code, 1);
+  EXPECT_THAT(little.err, HasSubstr("less than 2 % of each square of 8192 m"));
+  EXPECT_EQ(pairs("town/pre.tif", "town/roads.geojson", "mine", "--gsd 2 --side-px 256").code, 0);
+}
+
 }  // namespace
 }  // namespace roadfix

@@ -1,7 +1,5 @@
 #include "tiles/pipeline/training_pairs.hpp"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <opencv2/imgproc.hpp>
 

@@ -20,8 +20,8 @@ struct TrainingPair {
 /// Pixels of 0.5, 1 or 2 m, about as large as those of the imagery. Networks look at pixels of about a metre.
 double pair_gsd_m(double imagery_gsd_m);
 
-/// Squares of the lattice that hold ground of both, from west to east and from north to south: the same of every picture
-/// of that ground.
+/// Squares of the lattice that hold ground of both, from west to east and from north to south: the same of every
+/// picture of that ground.
 std::vector<GridGeometry> pair_squares(const Mosaic& imagery, const CellSource& roads, double gsd_m, int side_px);
 
 /// Of the ground of `square`, a pixel for each of its cells. Thread-safe. Throws what reading either does.

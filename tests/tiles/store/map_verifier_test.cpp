@@ -124,12 +124,12 @@ TEST_F(MapVerifier, FindsADescriptionByWhichOtherProgramsMisreadTheMap) {
 }
 
 TEST_F(MapVerifier, FindsAReferenceByWhichOtherProgramsShowTheMapElsewhere) {
+  const char* const another_meridian = R"(gpkg_spatial_ref_sys
+      SET definition = replace(definition, '"central_meridian",39', '"central_meridian",33') WHERE srs_id = 32637)";
   for (const std::string change :
        {"gpkg_contents SET srs_id = 4326", "gpkg_contents SET data_type = 'tiles'",
         "gpkg_spatial_ref_sys SET organization_coordsys_id = 32636 WHERE srs_id = 32637",
-        "gpkg_spatial_ref_sys SET organization = 'NONE' WHERE srs_id = 32637",
-        "gpkg_spatial_ref_sys SET definition = replace(definition, '\"central_meridian\",39', "
-        "'\"central_meridian\",33') WHERE srs_id = 32637"}) {
+        "gpkg_spatial_ref_sys SET organization = 'NONE' WHERE srs_id = 32637", another_meridian}) {
     const fs::path copy = folder / "copy.gpkg";
     fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
     testing::open_sqlite(copy).execute(("UPDATE " + change).c_str());

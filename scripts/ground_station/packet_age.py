@@ -1,6 +1,8 @@
 """How old MAVLink messages say that their position is: the time of sending and that of processing."""
 import struct
 
+from crc import crc
+
 HEAD, CHECKSUM = 10, 2  # bytes around the payload of MAVLink 2
 CRC_EXTRA = 158         # of both
 COMMAND_WRAP_S = 250.0  # the time of sending of command_int starts anew
@@ -28,18 +30,8 @@ def with_age(packet_format, packet, age_s):
         times = sent - processing + age_us, age_us
     payload = (struct.pack(layout, *times) + payload[size:]).rstrip(b"\0") or b"\0"
     checked = bytes([len(payload)]) + packet[2:HEAD] + payload
-    return packet[:1] + checked + _crc(checked + bytes([CRC_EXTRA])).to_bytes(CHECKSUM, "little")
+    return packet[:1] + checked + crc(checked + bytes([CRC_EXTRA])).to_bytes(CHECKSUM, "little")
 
 
 def _payload(packet, least):
     return packet[HEAD:-CHECKSUM].ljust(least, b"\0")  # zeros at the end are not sent
-
-
-def _crc(data):
-    """CRC-16/MCRF4XX."""
-    value = 0xFFFF
-    for byte in data:
-        byte ^= value & 0xFF
-        byte ^= byte << 4 & 0xFF
-        value = value >> 8 ^ byte << 8 ^ byte << 3 ^ byte >> 4
-    return value & 0xFFFF

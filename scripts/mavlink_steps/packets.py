@@ -3,6 +3,8 @@ moves and what it answers, by common.xml and ardupilotmega.xml."""
 import struct
 from typing import NamedTuple
 
+from crc import crc
+
 #: id: name, CRC_EXTRA, wire order of the fields that are used
 MESSAGES = {
     24: ("GPS_RAW_INT", 24, "<Q3i4HB", ("time_usec", "lat", "lon", "alt", "eph", "epv", "vel", "cog", "fix_type")),
@@ -32,16 +34,6 @@ class Message(NamedTuple):
     component: int
     name: str
     fields: dict
-
-
-def crc(data):
-    """CRC-16/MCRF4XX."""
-    value = 0xFFFF
-    for byte in data:
-        byte ^= value & 0xFF
-        byte ^= byte << 4 & 0xFF
-        value = value >> 8 ^ byte << 8 ^ byte << 3 ^ byte >> 4
-    return value & 0xFFFF
 
 
 def _packet_at(data, at):

@@ -28,7 +28,8 @@ except ImportError as missing:
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 sys.path.insert(0, str(SCRIPTS / "mavlink_steps"))
 
-from packets import MESSAGES, crc  # noqa: E402
+from crc import crc  # noqa: E402
+from packets import MESSAGES  # noqa: E402
 
 gdal.UseExceptions()
 PROGRAM = sys.argv.pop(1) if len(sys.argv) > 1 else "roadfix"

@@ -58,7 +58,7 @@ GridReader soft_reader(const MapView& map, double finest_cell_m) {
       for (int col = block_of(first.col); col * kKeptBlockCells < first.col + geometry.cols; ++col) {
         const GridGeometry window{
             geometry.cell_m, {col * kKeptBlockCells, row * kKeptBlockCells}, kKeptBlockCells, kKeptBlockCells};
-        const auto block = kept->get<SoftBlock>(window, {levels}, [&] { return soft_block(read, window, levels); });
+        const auto block = kept->get<SoftBlock>(window, {levels}, {}, [&] { return soft_block(read, window, levels); });
         paste(block->cells, grid.cells, window.origin.col - first.col, window.origin.row - first.row);
       }
     }

@@ -1,5 +1,6 @@
 #include "core/search/search_cache.hpp"
 
+#include <chrono>
 #include <cmath>
 #include <exception>
 #include <string_view>
@@ -7,6 +8,19 @@
 #include "core/units/fnv.hpp"
 
 namespace roadfix {
+namespace {
+
+/// Whether it is ready before the deadline. Throws as Deadline::over().
+template <typename T>
+bool is_ready_before(const Deadline& deadline, const std::shared_future<T>& result) {
+  constexpr std::chrono::milliseconds kBetweenLooks(10);
+  while (result.wait_for(kBetweenLooks) != std::future_status::ready) {
+    if (deadline.over()) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 SearchCache::Key SearchCache::key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters) {
   return {type,
@@ -21,7 +35,7 @@ std::size_t SearchCache::KeyHash::operator()(const Key& key) const {
   return hash.value() ^ type.hash_code();
 }
 
-SearchCache::Pointer SearchCache::entry(const Key& key, const std::function<Value()>& build) {
+SearchCache::Pointer SearchCache::entry(const Key& key, const Deadline& deadline, const std::function<Value()>& build) {
   std::promise<Pointer> promise;
   std::shared_future<Pointer> result;
   {
@@ -34,7 +48,7 @@ SearchCache::Pointer SearchCache::entry(const Key& key, const std::function<Valu
       result = found->second;
     }
   }
-  if (result.valid()) return result.get();
+  if (result.valid()) return is_ready_before(deadline, result) ? result.get() : nullptr;
   try {
     const Value built = build();
     const std::lock_guard lock(mutex_);

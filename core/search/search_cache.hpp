@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "core/grid/geometry.hpp"
+#include "core/match/deadline.hpp"
 #include "core/units/lru_cache.hpp"
 
 namespace roadfix {
@@ -26,13 +27,17 @@ class SearchCache {
 
   explicit SearchCache(std::size_t max_bytes) : kept_(max_bytes) {}
 
-  /// What was built for `window` with these parameters before, or what build() returns now; T has bytes().
+  /// What was built for `window` with these parameters before, or what build() returns now; T has bytes(). Where
+  /// another search is building it, waits for that until the deadline, which may throw; nullptr = it was not ready by
+  /// then.
   template <typename T, typename Build>
-  std::shared_ptr<const T> get(const GridGeometry& window, const Parameters& parameters, Build build) {
-    const auto built = entry(key_of(typeid(T), window, parameters), [&] {
+  std::shared_ptr<const T> get(const GridGeometry& window, const Parameters& parameters, const Deadline& deadline,
+                               Build build) {
+    const auto build_entry = [&] {
       auto value = std::make_shared<const T>(build());
       return Value{value, value->bytes()};
-    });
+    };
+    const auto built = entry(key_of(typeid(T), window, parameters), deadline, build_entry);
     return std::static_pointer_cast<const T>(built);
   }
 
@@ -50,19 +55,20 @@ class SearchCache {
   };
 
   static Key key_of(std::type_index type, const GridGeometry& window, const Parameters& parameters);
-  Pointer entry(const Key& key, const std::function<Value()>& build);
+  Pointer entry(const Key& key, const Deadline& deadline, const std::function<Value()>& build);
 
   LruCache<Key, Pointer, KeyHash> kept_;
   std::mutex mutex_;  ///< of what is being built, and so that it is kept once it is no longer
   std::map<Key, std::shared_future<Pointer>> being_built_;
 };
 
-/// From the cache, or without one just built.
+/// From the cache, or without one just built. nullptr as from SearchCache::get().
 template <typename T, typename Build>
 std::shared_ptr<const T> get_or_build(const std::shared_ptr<SearchCache>& cache, const GridGeometry& window,
-                                      const SearchCache::Parameters& parameters, Build build) {
+                                      const SearchCache::Parameters& parameters, const Deadline& deadline,
+                                      Build build) {
   if (!cache) return std::make_shared<const T>(build());
-  return cache->get<T>(window, parameters, build);
+  return cache->get<T>(window, parameters, deadline, build);
 }
 
 }  // namespace roadfix

@@ -31,7 +31,7 @@ std::shared_ptr<const BoundMap> map_before(const Deadline& deadline, const GridG
   while (!deadline.over()) {
     try {
       // The halvings are part of the key since searches differ in the finest cells that these are means of.
-      return get_or_build<BoundMap>(options.cache, window, {halvings},
+      return get_or_build<BoundMap>(options.cache, window, {halvings}, deadline,
                                     [&] { return BoundMap(level.read(window), deadline); });
     } catch (const BoundMap::TimeIsOver&) {
       // Perhaps that of another search, which was building it for both.

@@ -77,8 +77,9 @@ std::shared_ptr<const ScanMap> SearchScan::map_below(const GridGeometry& positio
   const GridGeometry window = positions.padded(reach);
   const int block = scan_block(coarse.features.map);
   // The halvings are part of the key since searches differ in the finest cells that these are means of.
+  const Deadline until_stopped(options_.deadline.stop());  // it is a small part of the scan, which has nothing without
   return get_or_build<ScanMap>(options_.cache, window, {reach, block, levels_.halvings(levels_.coarsest())},
-                               [&] { return ScanMap(coarse.read(window), reach, block); });
+                               until_stopped, [&] { return ScanMap(coarse.read(window), reach, block); });
 }
 
 /// The coarser the cells, the wider scores spread. If the scan has coarser cells than calibrations were learned in, the

@@ -3,10 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <chrono>
 #include <ctime>
+#include <latch>
 #include <stdexcept>
+#include <stop_token>
 #include <thread>
 #include <vector>
+
+#include "core/units/error.hpp"
 
 namespace roadfix {
 namespace {
@@ -23,7 +28,7 @@ TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
   SearchCache cache(1000);
   int built = 0;
   const auto get = [&](int col, const SearchCache::Parameters& parameters) {
-    return cache.get<Piece>(window(col), parameters, [&] { return Piece{++built}; })->value;
+    return cache.get<Piece>(window(col), parameters, {}, [&] { return Piece{++built}; })->value;
   };
   EXPECT_EQ(get(1, {5, 4}), 1);
   EXPECT_EQ(get(1, {5, 4}), 1);
@@ -37,7 +42,7 @@ TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
 TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
   SearchCache cache(25);
   int built = 0;
-  const auto get = [&](int col) { return cache.get<Piece>(window(col), {}, [&] { return Piece{++built}; }); };
+  const auto get = [&](int col) { return cache.get<Piece>(window(col), {}, {}, [&] { return Piece{++built}; }); };
   get(1);
   get(2);
   get(1);
@@ -45,7 +50,7 @@ TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
   EXPECT_EQ(cache.bytes(), 20U);
   EXPECT_EQ(get(1)->value, 1);
   EXPECT_EQ(get(2)->value, 4);
-  const auto large = cache.get<Piece>(window(9), {}, [] { return Piece{7, 100}; });
+  const auto large = cache.get<Piece>(window(9), {}, {}, [] { return Piece{7, 100}; });
   EXPECT_EQ(large->value, 7) << "what does not fit is used all the same";
   EXPECT_LE(cache.bytes(), 25U);
 }
@@ -55,7 +60,7 @@ TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
   SearchCache cache(std::size_t{10} * kMany);
   const auto time_of = [&](int first) {
     const std::clock_t begin = std::clock();
-    for (int col = first; col < first + kMany; ++col) cache.get<Piece>(window(col), {}, [] { return Piece{}; });
+    for (int col = first; col < first + kMany; ++col) cache.get<Piece>(window(col), {}, {}, [] { return Piece{}; });
     return static_cast<double>(std::clock() - begin);
   };
   const double filling = time_of(0);
@@ -67,8 +72,8 @@ TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
 TEST(SearchCache, WhatFailedIsBuiltAnew) {
   SearchCache cache(100);
   const auto fails = []() -> Piece { throw std::runtime_error("no"); };
-  EXPECT_THROW(cache.get<Piece>(window(1), {}, fails), std::runtime_error);
-  EXPECT_EQ(cache.get<Piece>(window(1), {}, [] { return Piece{8}; })->value, 8);
+  EXPECT_THROW(cache.get<Piece>(window(1), {}, {}, fails), std::runtime_error);
+  EXPECT_EQ(cache.get<Piece>(window(1), {}, {}, [] { return Piece{8}; })->value, 8);
 }
 
 TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
@@ -79,7 +84,7 @@ TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
     for (int i = 0; i < 8; ++i) {
       threads.emplace_back([&] {
         for (int k = 0; k < 50; ++k) {
-          const auto piece = cache.get<Piece>(window(k), {}, [&] { return Piece{++built > 0 ? 2 * k : 0}; });
+          const auto piece = cache.get<Piece>(window(k), {}, {}, [&] { return Piece{++built > 0 ? 2 * k : 0}; });
           EXPECT_EQ(piece->value, k * 2);
         }
       });
@@ -87,6 +92,27 @@ TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
   }
   EXPECT_EQ(built, 50);
   EXPECT_EQ(cache.bytes(), 500U);
+}
+
+TEST(SearchCache, WaitsForWhatAnotherBuildsNoLongerThanTheDeadline) {
+  SearchCache cache(1000);
+  std::latch begun(1);
+  std::latch may_end(1);
+  std::jthread other([&] {
+    cache.get<Piece>(window(1), {}, {}, [&] {
+      begun.count_down();
+      may_end.wait();
+      return Piece{5};
+    });
+  });
+  begun.wait();
+  const Deadline soon({}, std::chrono::steady_clock::now() + std::chrono::milliseconds(30));
+  EXPECT_EQ(cache.get<Piece>(window(1), {}, soon, [] { return Piece{6}; }), nullptr);
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_THROW(cache.get<Piece>(window(1), {}, Deadline(stop.get_token()), [] { return Piece{6}; }), Interrupted);
+  may_end.count_down();
+  EXPECT_EQ(cache.get<Piece>(window(1), {}, {}, [] { return Piece{6}; })->value, 5);
 }
 
 }  // namespace

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import cv2
 
+from roadnet.checkpoints import require_file
 from roadnet.data import load_pairs, read_sets
 from roadnet.localize import recall
 from roadnet.metrics import evaluate_pairs, logits_and_labels, reliability
@@ -39,6 +40,8 @@ def table(title, figures):
 def main():
     options = arguments()
     cv2.setNumThreads(options.threads)
+    for path in (options.model, options.model.with_suffix(".json")):
+        require_file(path)
     predict = OnnxNetwork(options.model)
     description = json.loads(options.model.with_suffix(".json").read_text())
     gsd_m, fit = description["gsd_m"], description["calibration"]

@@ -9,7 +9,7 @@ from pathlib import Path
 import cv2
 import torch
 
-from roadnet.checkpoints import mean_of_weights, read_network
+from roadnet.checkpoints import mean_of_weights, read_network, state_of
 from roadnet.data import load_pairs, read_sets
 from roadnet.export import difference, export, fit_calibration
 from roadnet.metrics import logits_and_labels
@@ -36,7 +36,7 @@ def main():
     options = arguments()
     torch.set_num_threads(options.threads)
     cv2.setNumThreads(options.threads)
-    states = [torch.load(path, map_location="cpu") for path in options.checkpoint]
+    states = [state_of(path) for path in options.checkpoint]
     gsd_m = states[0]["gsd_m"]
     if any(state["gsd_m"] != gsd_m for state in states):
         raise SystemExit("the checkpoints see different metres per pixel: they cannot become one network")

@@ -69,11 +69,13 @@ def described_sets(folder):
 
 def parts_of(text):
     """Folder, scale and share of --pairs; empty where they are not told."""
+    if Path(text).is_dir():
+        return text, "", ""
     folder, told, rest = text.rpartition("=")
     if told:
         gsd, _, share = rest.partition(":")
         return folder, gsd, share
-    folder, _, share = (text, "", "") if Path(text).is_dir() else text.rpartition(":")
+    folder, _, share = text.rpartition(":")
     return folder or text, "", share
 
 

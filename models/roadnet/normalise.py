@@ -3,7 +3,6 @@
 Each channel minus the local mean of grey, over the local standard deviation of grey plus a floor; the window is a
 square, and only what was seen counts. The product computes the same (core/detect/network_picture.cpp).
 """
-import torch
 from torch.nn import functional as F
 
 WINDOW = 129  # pixels of the network

@@ -97,6 +97,13 @@ class Training(unittest.TestCase):
         [found] = train.own_sets([f"{self.folder / 'pairs'}=1.5:0.2"])
         self.assertEqual((found.gsd_m, found.nodata, found.share), (1.5, "", 0.2))
 
+    def test_a_folder_of_pairs_may_be_called_as_one_likes(self):
+        for name in ("scale=2", "scale=2:1"):
+            shutil.copytree(self.folder / "pairs", self.folder / name)
+            self.describe(name)
+            [found] = train.own_sets([str(self.folder / name)])
+            self.assertEqual((found.gsd_m, found.share), (0.5, 1.0))
+
     def test_what_is_no_number_in_the_pairs_of_the_command_is_named(self):
         for told in ("=half", "=0.5:much", ":much"):
             self.describe("pairs")
@@ -247,6 +254,16 @@ class Parts(unittest.TestCase):
             mean = checkpoints.mean_of_weights(paths)
             torch.testing.assert_close(mean.head.weight, (members[0].head.weight + members[1].head.weight) / 2)
             torch.testing.assert_close(checkpoints.mean_of_weights(paths[:1]).state_dict(), members[0].state_dict())
+
+    def test_what_is_no_network_is_named(self):
+        with tempfile.TemporaryDirectory() as place:
+            text, other = Path(place) / "text.pt", Path(place) / "other.pt"
+            text.write_text("no network")
+            torch.save([1, 2], other)
+            for path, message in ((Path(place) / "absent.pt", "no such file"), (Path(place) / "absent.onnx", "no such file"),
+                                  (text, "no checkpoint"), (other, "no checkpoint")):
+                with self.assertRaisesRegex(SystemExit, f"{path}.*{message}"):
+                    checkpoints.read_network([path])
 
     def test_an_exported_network_comes_back_and_answers_alike_while_it_learns(self):
         torch.manual_seed(1)

@@ -74,7 +74,7 @@ void ingest_one(const IngestArguments& arguments, const SourceRequest& request, 
     if (auto note = note_on_ground_lost(source, arguments.map, record.name, settings.cell_m))
       summary.notes.push_back(std::move(*note));
   }
-  print_notes(request.files, summary);
+  print_notes(request.files, summary.notes);
   const nlohmann::json json = summary_json(record, summary, planned.blocks, settings);
   if (arguments.dry_run) {
     MapWriter::require_acceptable(arguments.map, settings, record, arguments.options.replace);

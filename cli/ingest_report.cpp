@@ -97,8 +97,8 @@ void print_report(nlohmann::json json, const SourceSummary& summary, const MapSe
              lines ? "features" : "MP", report.fusing_s);
 }
 
-void print_notes(const SourceFiles& files, const SourceSummary& summary) {
-  for (const std::string& note : summary.notes) fmt::print(stderr, "note: {}\n", note);
+void print_notes(const SourceFiles& files, const std::vector<std::string>& notes) {
+  for (const std::string& note : notes) fmt::print(stderr, "note: {}\n", note);
   if (files.left_out.empty()) return;
   const bool file = files.paths.size() == 1 && files.paths.front() == files.location;
   fmt::print(stderr, "note: {}; left out {} {}: {}\n",
@@ -106,7 +106,7 @@ void print_notes(const SourceFiles& files, const SourceSummary& summary) {
                   : fmt::format("a folder or archive is one source, {} one of {}", files.location,
                                 files.kind == SourceKind::kRoadVectors ? "vectors" : "images"),
              files.left_out.size() == 1 ? "is" : "are", fmt::join(files.left_out, ", "),
-             file ? "--layer NAME ingests vectors instead" : "ingest them by their own paths");
+             file ? "--layer NAME takes vectors instead" : "give them by their own paths");
 }
 
 }  // namespace roadfix::cli

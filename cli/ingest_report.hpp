@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/sources/cell_source.hpp"
@@ -27,7 +28,7 @@ double cell_mp(const SourceSummary& summary, const MapSettings& settings);
 void print_report(nlohmann::json json, const SourceSummary& summary, const MapSettings& settings,
                   const IngestReport& report, bool as_json);
 
-/// On stderr, so that --json stays clean.
-void print_notes(const SourceFiles& files, const SourceSummary& summary);
+/// What is noted of a source, and which files beside it are left out; on stderr, so that --json stays clean.
+void print_notes(const SourceFiles& files, const std::vector<std::string>& notes);
 
 }  // namespace roadfix::cli

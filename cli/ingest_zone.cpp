@@ -104,7 +104,8 @@ PlannedSource plan_source(const SourceRequest& request, const MapSettings& setti
     }
     throw;
   } catch (const LimitExceeded& error) {
-    if (planned.cells) print_notes(request.files, planned.cells->summary());  // of what makes it so large, for one
+    if (planned.cells)
+      print_notes(request.files, planned.cells->summary().notes);  // of what makes it so large, for one
     if (request.files.paths.size() < 2) throw;
     throw LimitExceeded(error.code(), fmt::format("{}. Where the files of {} lie far apart, ingest those of each place "
                                                   "as a source of its own",

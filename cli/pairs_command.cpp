@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/ingest_report.hpp"
 #include "cli/output_file.hpp"
 #include "cli/road_options.hpp"
 #include "cli/terminal.hpp"
@@ -22,6 +23,7 @@
 #include "core/units/parallel_for.hpp"
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/pipeline/training_pairs.hpp"
+#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
@@ -61,7 +63,9 @@ std::unique_ptr<CellSource> open_roads(const PairsArguments& arguments, const Ma
   Progress reading(fmt::format("reading {}", roads.files.name), "%", 0.1);
   roads.vectors.on_reading = reading.updates_if_long();
   roads.vectors.stop = stop;
-  return open_source(roads, lattice, nullptr);
+  std::unique_ptr<CellSource> source = open_source(roads, lattice, nullptr);
+  print_notes(roads.files, source->summary().notes);
+  return source;
 }
 
 Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop) {
@@ -70,9 +74,9 @@ Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop)
   if (!arguments.collar.empty()) raster.collar = parse_colour(arguments.collar);
   const UtmZone zone = zone_of_image(pictures.paths.front(), raster);
   auto imagery = std::make_unique<Mosaic>(pictures.paths, raster, ValueRule::kPicture, zone);
+  print_notes(pictures, notes_on_imagery(pictures.paths.front(), raster));
   const double gsd_m = arguments.gsd_m.value_or(pair_gsd_m(imagery->gsd_m()));
   std::unique_ptr<CellSource> roads = open_roads(arguments, {zone, gsd_m}, stop);
-  for (const std::string& note : roads->summary().notes) fmt::print(stderr, "note: {}\n", note);
   return {arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(roads), gsd_m};
 }
 

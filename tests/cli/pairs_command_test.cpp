@@ -103,6 +103,15 @@ TEST_F(PairsCommand, RefusesWhatWouldMixSquaresOrHoldNothing) {
   EXPECT_THAT(width.err, HasSubstr("[option-without-effect]"));
 }
 
+TEST_F(PairsCommand, NotesImageryThatLooksLikeRoads) {
+  cv::Mat mask(64, 64, CV_8UC1, cv::Scalar(0));
+  mask.row(30).setTo(255);
+  cv::imwrite(path("mask.png"), mask);
+  std::ofstream(folder / "mask.pgw") << "1\n0\n0\n-1\n264000\n4183000\n";
+  const ProgramResult result = pairs("mask.png", "town/roads.geojson", "mine", "--crs EPSG:32637");
+  EXPECT_THAT(result.err, HasSubstr("note: " + path("mask.png") + ": its values are 0 and 255, as those of a mask"));
+}
+
 TEST_F(PairsCommand, AsksForSmallerSquaresWhereLittleOfEachIsSeen) {
   const ProgramResult little = pairs("town/pre.tif", "town/roads.geojson", "mine", "--gsd 2 --side-px 4096");
   EXPECT_EQ(little.code, 1);

@@ -4,6 +4,9 @@
 
 #include <opencv2/core.hpp>
 #include <optional>
+#include <utility>
+
+#include "tiles/sources/road_values.hpp"
 
 namespace roadfix {
 namespace {
@@ -23,7 +26,7 @@ std::optional<std::string> note_on_colours(const RasterFile& file) {
                                  : fmt::format("not all of red, green and blue are named among its {} bands", bands);
   return fmt::format(
       "{}: {}, so the first three are taken for them in this order. If others are, name them (gdal_edit.py "
-      "-colorinterp_3 red -colorinterp_2 green -colorinterp_1 blue) and use --replace",
+      "-colorinterp_3 red -colorinterp_2 green -colorinterp_1 blue) and run this again (ingest: with --replace)",
       file.path(), unsaid);
 }
 
@@ -43,26 +46,30 @@ std::optional<std::string> note_on_alpha(RasterFile& file) {
   return fmt::format(
       "{0}: {1:.0f} % of it is half transparent by its alpha band, band {2}, and what is less than half opaque counts "
       "as not seen. If band {2} holds something else, such as near infrared, say so (gdal_edit.py -colorinterp_{2} "
-      "undefined) and use --replace",
+      "undefined) and run this again (ingest: with --replace)",
       file.path(), 100.0 * graded / seen, band);
+}
+
+std::optional<std::string> note_on_likely_heights(const RasterFile& file) {
+  if (!looks_like_heights(file)) return std::nullopt;
+  return fmt::format(
+      "{}: it has one band of real numbers, as heights have, and they are taken for brightness. If they are heights, "
+      "give the orthophoto itself (roadfix remove takes out of a map what was ingested)",
+      file.path());
 }
 
 }  // namespace
 
 bool looks_like_heights(const RasterFile& file) { return file.channels() == 1 && !file.holds_integers(); }
 
-std::optional<std::string> note_on_likely_heights(const RasterFile& file) {
-  if (!looks_like_heights(file)) return std::nullopt;
-  return fmt::format(
-      "{}: it has one band of real numbers, as heights have, and they are taken for brightness. If they are heights, "
-      "take it out of the map (roadfix remove) and ingest the orthophoto itself",
-      file.path());
-}
-
-std::vector<std::string> notes_on_bands(RasterFile& file) {
+std::vector<std::string> notes_on_imagery(const std::string& path, const RasterOptions& options) {
+  RasterFile file(path, options);
+  std::optional<std::string> meaning = note_on_likely_roads(path, options);
+  if (!meaning) meaning = note_on_likely_heights(file);
   std::vector<std::string> notes;
-  if (auto note = note_on_colours(file)) notes.push_back(std::move(*note));
-  if (auto note = note_on_alpha(file)) notes.push_back(std::move(*note));
+  for (auto& note : {std::move(meaning), note_on_colours(file), note_on_alpha(file)}) {
+    if (note) notes.push_back(*note);
+  }
   return notes;
 }
 

@@ -1,7 +1,6 @@
 // What imagery says, or does not say, about the meaning of its bands.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,10 +10,10 @@ namespace roadfix {
 
 /// Whether it has one band of real numbers.
 bool looks_like_heights(const RasterFile& file);
-std::optional<std::string> note_on_likely_heights(const RasterFile& file);
 
-/// Of more than three bands without colours, of bands that have some of the three, and of an alpha band that looks like
-/// something else, as near infrared written without saying so does.
-std::vector<std::string> notes_on_bands(RasterFile& file);
+/// Of a file that is given as imagery: that it looks like roads or heights; more than three bands without colours, or
+/// bands that have some of the three; an alpha band that looks like something else, as near infrared written without
+/// saying so does.
+std::vector<std::string> notes_on_imagery(const std::string& path, const RasterOptions& options);
 
 }  // namespace roadfix

@@ -11,8 +11,11 @@
 namespace roadfix {
 namespace {
 
-/// What the prefixes stand for that are declared where a name stands.
-using Namespaces = std::map<std::string, std::string>;
+/// An element and those around it; the nearest that declares a prefix says what it stands for.
+struct Scope {
+  const CPLXMLNode& element;
+  const Scope* outer = nullptr;
+};
 
 constexpr std::string_view kDeclaration = "xmlns:";
 
@@ -21,48 +24,49 @@ std::string_view value_of(const CPLXMLNode& attribute_or_element) {
   return value != nullptr ? value : std::string_view();
 }
 
-Namespaces within(const CPLXMLNode& element, Namespaces namespaces) {
-  for (const CPLXMLNode* child = element.psChild; child != nullptr; child = child->psNext) {
-    const std::string_view name(child->pszValue);
-    if (child->eType != CXT_Attribute || !name.starts_with(kDeclaration)) continue;
-    namespaces[std::string(name.substr(kDeclaration.size()))] = value_of(*child);
+/// Empty where no element declares the prefix.
+std::string_view namespace_of(std::string_view prefix, const Scope& innermost) {
+  for (const Scope* scope = &innermost; scope != nullptr; scope = scope->outer) {
+    for (const CPLXMLNode* child = scope->element.psChild; child != nullptr; child = child->psNext) {
+      const std::string_view name(child->pszValue);
+      if (child->eType != CXT_Attribute || !name.starts_with(kDeclaration)) continue;
+      if (name.substr(kDeclaration.size()) == prefix) return value_of(*child);
+    }
   }
-  return namespaces;
+  return {};
 }
 
 /// Without its prefix.
 std::string_view local_name(std::string_view name) { return name.substr(name.rfind(':') + 1); }
 
-bool is_of_camera(std::string_view name, const Namespaces& namespaces) {
-  const auto found = namespaces.find(std::string(name.substr(0, name.find(':'))));
-  if (found == namespaces.end()) return false;
-  std::string_view space = found->second;
+bool is_of_camera(std::string_view name, const Scope& scope) {
+  std::string_view space = namespace_of(name.substr(0, name.find(':')), scope);
   if (space.ends_with('/')) space.remove_suffix(1);  // some writers leave it out
   return space == "http://pix4d.com/camera/1.0" || space == "http://ns.sensefly.com/Camera/1.0";
 }
 
-std::string tag_of(std::string_view name, const Namespaces& namespaces) {
-  return (is_of_camera(name, namespaces) ? "Camera:" : "") + std::string(local_name(name));
+std::string tag_of(std::string_view name, const Scope& scope) {
+  return (is_of_camera(name, scope) ? "Camera:" : "") + std::string(local_name(name));
 }
 
 /// Not the fields of structures: one drone tells the attitudes of several things by the same names.
-void collect_properties(const CPLXMLNode& description, const Namespaces& outer, Tags& tags) {
-  const Namespaces namespaces = within(description, outer);
-  for (const CPLXMLNode* child = description.psChild; child != nullptr; child = child->psNext) {
+void collect_properties(const Scope& description, Tags& tags) {
+  for (const CPLXMLNode* child = description.element.psChild; child != nullptr; child = child->psNext) {
     const std::string_view name(child->pszValue);
     const std::string_view value = value_of(*child);
     if (value.empty() || name.starts_with(kDeclaration)) continue;
-    tags.emplace(tag_of(name, within(*child, namespaces)), value);
+    tags.emplace(tag_of(name, {*child, &description}), value);
   }
 }
 
-void collect_descriptions(const CPLXMLNode* node, const Namespaces& outer, Tags& tags) {
+void collect_descriptions(const CPLXMLNode* node, const Scope* outer, Tags& tags) {
   for (; node != nullptr; node = node->psNext) {
     if (node->eType != CXT_Element) continue;
+    const Scope scope{*node, outer};
     if (local_name(node->pszValue) == "Description") {
-      collect_properties(*node, outer, tags);
+      collect_properties(scope, tags);
     } else {
-      collect_descriptions(node->psChild, within(*node, outer), tags);
+      collect_descriptions(node->psChild, &scope, tags);
     }
   }
 }
@@ -88,7 +92,7 @@ Tags tags_of_xmp(const std::string& text) {
   const GdalMessages quiet;
   const CPLXMLTreeCloser tree(CPLParseXMLString(text.c_str()));
   Tags tags;
-  collect_descriptions(tree.get(), {}, tags);
+  collect_descriptions(tree.get(), nullptr, tags);
   return tags;
 }
 

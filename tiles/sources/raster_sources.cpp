@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <optional>
 #include <utility>
@@ -85,11 +86,7 @@ class Imagery final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     state_position(mosaic_, kImagerySigmaM, summary_);
-    RasterFile first(paths.front(), options);
-    std::optional<std::string> note = note_on_likely_roads(paths.front(), options);
-    if (!note) note = note_on_likely_heights(first);
-    if (note) summary_.notes.push_back(std::move(*note));
-    for (std::string& about : notes_on_bands(first)) summary_.notes.push_back(std::move(about));
+    std::ranges::move(notes_on_imagery(paths.front(), options), std::back_inserter(summary_.notes));
   }
 
   SourceSummary summary() const override { return summary_; }

@@ -17,7 +17,7 @@ std::string note_on_labels(const std::string& path, double largest, double certa
   return fmt::format(
       "{0}: its values are 1 and {1:g}, as labels are, and count as {2:.3g} and {3:.3g} % road. If {1:g} is road and 1 "
       "is not, rescale them (gdal_translate -scale 1 {1:g} 0 {4:g}); if 1 is road and {1:g} means nothing, mark that "
-      "as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
+      "as nodata (gdal_edit.py -a_nodata {1:g}) and run this again (ingest: with --replace)",
       path, largest, 100.0 / certain, 100.0 * largest / certain, certain);
 }
 
@@ -45,13 +45,14 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
   if (low > kHalf * range.high) {
     notes.push_back(fmt::format(
         "{}: every pixel with data is road, so that nothing is known to be no road, and places look alike. If nodata "
-        "stands for no road here, take the mark away (gdal_edit.py -unsetnodata) and use --replace",
+        "stands for no road here, take the mark away (gdal_edit.py -unsetnodata) and run this again (ingest: with "
+        "--replace)",
         path));
   }
   if (high <= 0.0) {
     notes.push_back(fmt::format(
         "{}: every value that was looked at is 0, so that all of its ground becomes no road. If it should hold roads, "
-        "look at its values (gdalinfo -stats), and ingest the right ones with --replace",
+        "look at its values (gdalinfo -stats), and give the right ones (ingest: with --replace)",
         path));
   }
   if (values.integers && high > 0.0 && high < kHalf * range.high) {
@@ -64,14 +65,15 @@ std::vector<std::string> notes_on_road_values(const std::string& path, const Sha
   if (values.integers && !values.bytes && high > 1.0 && high < kByte) {
     notes.push_back(fmt::format(
         "{}: its integers of more than 8 bits go to {:g} only, and 255 is taken for a certain road. If 65535 is one, "
-        "make bytes of them (gdal_translate -ot Byte -scale 0 65535 0 255) and use --replace",
+        "make bytes of them (gdal_translate -ot Byte -scale 0 65535 0 255) and run this again (ingest: with --replace)",
         path, high));
   }
   if (values.ones_only) {
-    notes.push_back(fmt::format(
-        "{0}: its values are 0 and 1, but for some of {1:g}, so that 1 counts as {2:.2g} % road. If 1 is "
-        "road and {1:g} means nothing, mark that as nodata (gdal_edit.py -a_nodata {1:g}) and use --replace",
-        path, high, 100.0 / range.high));
+    notes.push_back(
+        fmt::format("{0}: its values are 0 and 1, but for some of {1:g}, so that 1 counts as {2:.2g} % road. If 1 is "
+                    "road and {1:g} means nothing, mark that as nodata (gdal_edit.py -a_nodata {1:g}) and run this "
+                    "again (ingest: with --replace)",
+                    path, high, 100.0 / range.high));
   }
   return notes;
 }
@@ -109,7 +111,7 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
   const double max = file.channels() == 3 ? 255.0 : range.high;
   return fmt::format(
       "{}: {:.0f} % of it is road. If dark stands for roads here, turn its values round (gdal_translate -scale 0 {:g} "
-      "{:g} 0, with -expand gray where it has a palette) and use --replace",
+      "{:g} 0, with -expand gray where it has a palette) and run this again (ingest: with --replace)",
       path, 100.0 * bright / seen, max, max);
 }
 
@@ -132,7 +134,8 @@ std::optional<std::string> note_on_likely_roads(const std::string& path, const R
   const bool probabilities = !file.holds_integers() && min < max && min >= 0.0F && max <= 1.0F;
   if (!mask && !probabilities) return std::nullopt;
   return fmt::format(
-      "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, give --as roads",
+      "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, it is no imagery "
+      "(ingest: give --as roads)",
       path, min, mask ? "and" : "to", max, mask ? "a mask of roads are" : "probabilities are");
 }
 

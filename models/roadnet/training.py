@@ -177,7 +177,7 @@ def train(crops, options):
                   f"{pace * (options.steps - run.step) / 60:.0f} min left", flush=True)
         if run.step % options.save_every == 0 or over:
             run.save()
-        if run.step % options.validate_every == 0 or over:
+        if crops.held_out and (run.step % options.validate_every == 0 or over):
             for name, figures in evaluate_pairs(TorchNetwork(run.averaged, run.device), crops.held_out, crops.gsd_m).items():
                 print(f"  held out {name}: {figures}", flush=True)
         if over:

@@ -120,6 +120,12 @@ class Training(unittest.TestCase):
         self.assertIn("resume from", self.train("pairs", "run", "--steps", 60, "--ramp", 1000000))
         self.assertGreater(f1_of(self.folder / "run/checkpoint.pt", self.folder), 0.5)
 
+    def test_a_run_without_held_out_pairs_tells_no_figures_of_them(self):
+        self.describe("pairs", gsd_m=1.0, hold_out_every=0)
+        said = self.train("pairs", "run", "--steps", 1)
+        self.assertIn("8 pairs to train on, 0 held out", said)
+        self.assertNotIn("precision", said)
+
     def test_a_pupil_learns_from_its_teacher_what_no_label_says(self):
         shutil.copytree(self.folder / "pairs", self.folder / "unlabelled")
         for mask in (self.folder / "unlabelled/masks").iterdir():

@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "core/routes/route_json.hpp"
 
 namespace roadfix::routes {
@@ -16,16 +20,23 @@ void add_place(const JsonField& field, Route& route) {
   route.places.push_back(std::move(place));
 }
 
+/// Itself, or the members of a collection.
+void add_geometry(const JsonField& geometry, std::vector<JsonField>& geometries) {
+  if (geometry.is_null()) return;
+  if (!geometry.has("geometries")) return geometries.push_back(geometry);
+  for (const JsonField& member : geometry.at("geometries").elements()) geometries.push_back(member);
+}
+
 std::vector<JsonField> geometries_of(const JsonField& document) {
+  std::vector<JsonField> geometries;
   if (document.has("features")) {
-    std::vector<JsonField> geometries;
     for (const JsonField& feature : document.at("features").elements()) {
-      const JsonField geometry = feature.at("geometry");
-      if (!geometry.is_null()) geometries.push_back(geometry);
+      add_geometry(feature.at("geometry"), geometries);
     }
-    return geometries;
+  } else {
+    add_geometry(document.has("geometry") ? document.at("geometry") : document, geometries);
   }
-  return {document.has("geometry") ? document.at("geometry") : document};
+  return geometries;
 }
 
 void add_line(const JsonField& positions, Route& route) {
@@ -41,10 +52,11 @@ void add_lines(const JsonField& geometry, const std::string& type, Route& route)
   }
 }
 
-/// The first line, with a word on the others, or else all points.
+/// The first line, with a word on the others, or else all points. Refuses what holds areas alone.
 Route line_in(const JsonField& document) {
   Route line;
   Route points;
+  std::optional<JsonField> area;
   int number = 0;
   for (const JsonField& geometry : geometries_of(document)) {
     ++number;
@@ -58,6 +70,11 @@ Route line_in(const JsonField& document) {
       }
     }
     if (type == "Point") add_place(geometry.at("coordinates"), points);
+    if (type == "MultiPoint") add_line(geometry.at("coordinates"), points);
+    if (type.ends_with("Polygon")) area.emplace(geometry);
+  }
+  if (line.places.empty() && points.places.empty() && area) {
+    area->refuse("is a polygon, which tells no way: draw a line");
   }
   return line.places.empty() ? points : line;
 }

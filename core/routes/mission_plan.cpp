@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,8 @@ namespace roadfix::routes {
 namespace {
 
 constexpr double kMostCommands = 65'535.0;
+
+std::string name_of(int number) { return fmt::format("item {}", number); }
 
 LatLon position_in(const std::vector<JsonField>& numbers, std::size_t first) {
   return {latitude_of(numbers[first]), longitude_of(numbers[first + 1])};
@@ -49,10 +52,28 @@ RoutePlace place_of(const JsonField& item, std::string name) {
   return place;
 }
 
-/// What the heights of a landing pattern count from.
-std::optional<HeightAbove> heights_of_landing(const JsonField& item) {
-  if (!item.has("altitudesAreRelative")) return std::nullopt;
-  return item.at("altitudesAreRelative").truth() ? HeightAbove::kHome : HeightAbove::kSea;
+/// A place of a landing pattern, and what says in older plans whether its height counts from the home.
+struct LandingPlace {
+  const char* name;
+  const char* is_relative;
+};
+constexpr std::array<LandingPlace, 3> kLandingPlaces{{{"loiterCoordinate", "loiterAltitudeRelative"},
+                                                      {"landingApproachCoordinate", nullptr},
+                                                      {"landCoordinate", "landingAltitudeRelative"}}};
+
+/// What the height of a place of a landing pattern counts from.
+std::optional<HeightAbove> height_of_landing(const JsonField& item, const LandingPlace& place) {
+  for (const char* name : {"altitudesAreRelative", place.is_relative}) {
+    if (name != nullptr && item.has(name)) return item.at(name).truth() ? HeightAbove::kHome : HeightAbove::kSea;
+  }
+  return std::nullopt;
+}
+
+/// QGroundControl writes null for what is not set.
+bool is_told(const JsonField& home) {
+  if (home.is_null()) return false;
+  const std::vector<JsonField> numbers = home.elements();
+  return numbers.size() < 2 || !(numbers[0].is_null() || numbers[1].is_null());
 }
 
 /// The commands of which surveys and corridors are made.
@@ -65,17 +86,15 @@ std::vector<JsonField> transects_of(const JsonField& item) {
 class PlanReader {
  public:
   explicit PlanReader(const JsonField& mission) : mission_(mission) {
-    if (mission.has("plannedHomePosition")) {
-      way_ = MissionWay::from_home(coordinate(mission.at("plannedHomePosition"), HeightAbove::kSea, "the home"));
-    }
+    if (!mission.has("plannedHomePosition")) return;
+    const JsonField home = mission.at("plannedHomePosition");
+    if (is_told(home)) way_ = MissionWay::from_home(coordinate(home, HeightAbove::kSea, "the home"));
   }
 
   Route read() && {
     int number = 0;
     for (const JsonField& item : mission_.at("items").elements()) add_item(item, ++number);
-    Route route = std::move(way_).route();
-    route.left_out = std::move(left_out_);
-    return route;
+    return std::move(way_).route();
   }
 
  private:
@@ -88,8 +107,8 @@ class PlanReader {
   }
 
   void add_command(const JsonField& item, int number) {
-    way_.follow(item.at("command").whole_number(0.0, kMostCommands),
-                [&] { return place_of(item, fmt::format("item {}", number)); });
+    const std::string name = name_of(number);
+    way_.follow(item.at("command").whole_number(0.0, kMostCommands), name, [&] { return place_of(item, name); });
   }
 
   void add_pattern(const JsonField& item, int number) {
@@ -98,18 +117,17 @@ class PlanReader {
     if (!transects.empty()) {
       for (const JsonField& part : transects) add_command(part, number);
     } else if (item.has("landCoordinate")) {
-      const auto above = heights_of_landing(item);
-      for (const char* place : {"landingApproachCoordinate", "landCoordinate"}) {
-        if (item.has(place)) way_.fly_to(coordinate(item.at(place), above, fmt::format("item {}", number)));
+      for (const LandingPlace& place : kLandingPlaces) {
+        if (!item.has(place.name)) continue;
+        way_.fly_to(coordinate(item.at(place.name), height_of_landing(item, place), name_of(number)));
       }
     } else {
-      left_out_.push_back(fmt::format("item {}, a {}: the plan does not say which way it leads", number, kind));
+      way_.leave_out(fmt::format("{}, a {}: the plan does not say which way it leads", name_of(number), kind));
     }
   }
 
   const JsonField mission_;
   MissionWay way_;
-  std::vector<std::string> left_out_;
 };
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,7 +38,7 @@ class MissionWay {
     if (is_told(home.position)) way.begin_at(std::move(home));
     return way;
   }
-  /// Of a mission whose first place is its home.
+  /// Of a mission whose first item is its home, at 0, 0 where that is not told.
   static MissionWay from_first_place() {
     MissionWay way;
     way.first_is_home_ = true;
@@ -45,24 +46,28 @@ class MissionWay {
   }
   MissionWay() = default;  ///< of a mission without a home
 
-  /// `place_of` is called for commands that lead to a place: a RoutePlace, at 0, 0 for where the vehicle is.
+  /// `name`: of the item, for the user. `place_of` is called for commands that lead to a place: a RoutePlace, at 0, 0
+  /// for where the vehicle is.
   template <typename PlaceOf>
-  void follow(std::int64_t command, const PlaceOf& place_of) {
+  void follow(std::int64_t command, const std::string& name, const PlaceOf& place_of) {
     if (command == kReturnToLaunch && home_) return_home();
+    if (jumps(command)) leave_out(name + ", a jump: the way back, and the laps after the first");
     if (!leads_somewhere(command)) return;
     RoutePlace place = place_of();
+    const bool is_home = std::exchange(first_is_home_, false);
     if (!is_told(place.position)) {
       if (takes_off(command)) climb(place.height);
-    } else if (first_is_home_ && !home_) {
+    } else if (is_home) {
       begin_at(std::move(place));
     } else {
       fly_to(std::move(place));
     }
   }
   void fly_to(RoutePlace place) { places_.push_back(std::move(place)); }
+  void leave_out(std::string what) { left_out_.push_back(std::move(what)); }
 
   Route route() && {
-    Route route{std::move(places_), {}, {}};
+    Route route{std::move(places_), std::move(left_out_), {}};
     if (home_) {
       route.home = *home_;
     } else if (!route.places.empty()) {
@@ -80,6 +85,7 @@ class MissionWay {
     return std::ranges::find(kFlownTo, command) != kFlownTo.end();
   }
   static bool takes_off(std::int64_t command) { return command == 22 || command == 84; }
+  static bool jumps(std::int64_t command) { return command == 177 || command == 601; }  // to an item, or a tag
   /// Autopilots take both as 0 for a place that is not told.
   static bool is_told(LatLon place) { return place.lat_deg != 0.0 || place.lon_deg != 0.0; }
 
@@ -104,6 +110,7 @@ class MissionWay {
   bool first_is_home_ = false;
   std::optional<RouteHome> home_;
   std::vector<RoutePlace> places_;
+  std::vector<std::string> left_out_;
 };
 
 }  // namespace roadfix::routes

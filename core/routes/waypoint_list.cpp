@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -22,6 +23,8 @@ constexpr std::size_t kFrame = 2;
 constexpr std::size_t kCommand = 3;
 constexpr std::size_t kLatitude = 8;
 constexpr std::size_t kHeight = 10;
+
+std::string name_of(std::size_t line_number) { return fmt::format("line {}", line_number); }
 
 /// The numbers of a line, between tabs or blanks, however many.
 std::vector<double> numbers_of(std::string_view line, std::size_t line_number) {
@@ -58,17 +61,18 @@ RoutePlace place_in(const std::vector<double>& numbers, std::size_t line_number)
                                    line_number, numbers[kHeight], kHighestM));
   }
   return {position_in(numbers, line_number), height_in_frame(code_in(numbers[kFrame]), numbers[kHeight]),
-          fmt::format("line {}", line_number)};
+          name_of(line_number)};
 }
 
 void add_line(std::string_view line, std::size_t line_number, MissionWay& way) {
+  if (line.starts_with('#')) return;  // MAVProxy and pymavlink take these lines for comments
   const std::vector<double> numbers = numbers_of(line, line_number);
   if (numbers.empty()) return;
-  if (numbers.size() < kNumbers) {
+  if (numbers.size() != kNumbers) {  // lists of version 100 have thirteen, in another order
     throw InvalidInput(kRouteUnreadable,
                        fmt::format("line {} has {} numbers: a waypoint has twelve", line_number, numbers.size()));
   }
-  way.follow(code_in(numbers[kCommand]), [&] { return place_in(numbers, line_number); });
+  way.follow(code_in(numbers[kCommand]), name_of(line_number), [&] { return place_in(numbers, line_number); });
 }
 
 }  // namespace

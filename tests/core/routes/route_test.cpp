@@ -74,6 +74,30 @@ TEST(Routes, OfAPlanWithoutAHomeBeginAtItsFirstPlace) {
   EXPECT_THAT(parse_route(plan(items, "[0,0,0]")).places, ElementsAre(place(47.1, 8.1), place(47.2, 8.2)));
 }
 
+TEST(Routes, OfAPlanWhoseHomeIsNotSetBeginAtItsFirstPlace) {
+  const std::string items = simple_item(22, "47.1", "8.1") + "," + simple_item(16, "47.2", "8.2");
+  for (const char* home : {"null", "[null,null,null]"}) {
+    const Route route = parse_route(plan(items, home));
+    EXPECT_THAT(route.places, ElementsAre(place(47.1, 8.1), place(47.2, 8.2))) << home;
+    EXPECT_THAT(heights_of(route), ElementsAre(above_home(50), above_home(50))) << home;
+  }
+}
+
+TEST(Routes, FlyOnceWhatAPlanRepeatsAndSaySo) {
+  const std::string jump = R"({"type":"SimpleItem","command":177,"frame":2,"params":[2,3,0,0,0,0,0]})";
+  const Route of_a_plan =
+      parse_route(plan(simple_item(16, "47.1", "8.1") + "," + simple_item(16, "47.2", "8.2") + "," + jump));
+  EXPECT_THAT(of_a_plan.places, ElementsAre(place(47.39, 8.54), place(47.1, 8.1), place(47.2, 8.2)));
+  EXPECT_THAT(of_a_plan.left_out, ElementsAre(HasSubstr("item 3, a jump")));
+  const Route of_a_list = parse_route(
+      "QGC WPL 110\n"
+      "0 1 0 16 0 0 0 0 47.1 8.1 550 1\n"
+      "1 0 3 16 0 0 0 0 47.2 8.2 100 1\n"
+      "2 0 3 177 1 -1 0 0 0 0 0 1\n");
+  EXPECT_THAT(of_a_list.places, SizeIs(2));
+  EXPECT_THAT(of_a_list.left_out, ElementsAre(HasSubstr("line 4, a jump")));
+}
+
 TEST(Routes, OfAPlanFollowTheTransectsOfSurveysAndTheApproachOfLandings) {
   const std::string survey = R"({"type":"ComplexItem","complexItemType":"survey","polygon":[[47,8],[47,9],[48,9]],)"
                              R"("TransectStyleComplexItem":{"Items":[)" +
@@ -83,6 +107,14 @@ TEST(Routes, OfAPlanFollowTheTransectsOfSurveysAndTheApproachOfLandings) {
       R"("landCoordinate":[47.4,8.4,0]})";
   EXPECT_THAT(parse_route(plan(survey + "," + landing)).places,
               ElementsAre(place(47.39, 8.54), place(47.1, 8.1), place(47.1, 8.2), place(47.3, 8.3), place(47.4, 8.4)));
+}
+
+TEST(Routes, OfAnOldPlanLoiterDownBeforeALandingEachPlaceAtAHeightOfItsOwnKind) {
+  const Route route = parse_route(
+      plan(R"({"type":"ComplexItem","complexItemType":"fwLandingPattern","version":1,"loiterCoordinate":[47.3,8.3,40],)"
+           R"("loiterAltitudeRelative":true,"landCoordinate":[47.4,8.4,480],"landingAltitudeRelative":false})"));
+  EXPECT_THAT(route.places, ElementsAre(place(47.39, 8.54), place(47.3, 8.3), place(47.4, 8.4)));
+  EXPECT_THAT(heights_of(route), ElementsAre(above_home(0), above_home(40), above_sea(480)));
 }
 
 TEST(Routes, OfAPlanNameWhatTheyLeaveOut) {
@@ -152,6 +184,29 @@ TEST(Routes, OfAWaypointListBeginAtItsFirstItemAndEndThereAgainWhereTheyReturn) 
   EXPECT_EQ(route.places[1].name, "line 3");
 }
 
+TEST(Routes, OfAWaypointListWhoseHomeIsNotSetBeginInTheAirAtItsFirstPlace) {
+  const Route route = parse_route(
+      "QGC WPL 110\n"
+      "0 1 0 16 0 0 0 0 0 0 0 1\n"
+      "1 0 3 22 0 0 0 0 0 0 30 1\n"
+      "2 0 0 16 0 0 0 0 47.1 8.1 600 1\n"
+      "3 0 3 16 0 0 0 0 47.2 8.2 100 1\n");
+  EXPECT_THAT(route.places, ElementsAre(place(47.1, 8.1), place(47.2, 8.2)));
+  EXPECT_THAT(heights_of(route), ElementsAre(above_sea(600), above_home(100)));
+  EXPECT_FALSE(route.home.above_sea_m) << "600 m is how high it flies";
+}
+
+TEST(Routes, OfAWaypointListPassOverComments) {
+  const Route route = parse_route(
+      "QGC WPL 110\r\n"
+      "# saved by MAVProxy\r\n"
+      "0\t1\t0\t16\t0\t0\t0\t0\t47.1\t8.1\t550\t1\r\n"
+      "  #\r\n"
+      "1\t0\t3\t16\t0\t0\t0\t0\t47.2\t8.2\t100\t1\r\n");
+  EXPECT_THAT(route.places, ElementsAre(place(47.1, 8.1), place(47.2, 8.2)));
+  EXPECT_EQ(route.places[1].name, "line 5");
+}
+
 TEST(Routes, OfAWaypointListCountHeightsAsItsThirdColumnSays) {
   const Route route = parse_route(
       "QGC WPL 110\n"
@@ -189,6 +244,17 @@ TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
               ElementsAre(place(1, 179), place(1, 180), place(1, -180), place(1, -179)));
 }
 
+TEST(Routes, OfGeoJsonAreFoundInCollectionsOfGeometries) {
+  const auto collection = [](const std::string& members) {
+    return R"({"type":"GeometryCollection","geometries":[)" + members + "]}";
+  };
+  const std::string line = R"({"type":"LineString","coordinates":[[21,57.5],[21.01,57.6]]})";
+  const auto drawn = ElementsAre(place(57.5, 21), place(57.6, 21.01));
+  EXPECT_THAT(parse_route(collection(line)).places, drawn);
+  EXPECT_THAT(parse_route(R"({"type":"Feature","geometry":)" + collection(line) + "}").places, drawn);
+  EXPECT_THAT(parse_route(R"({"type":"MultiPoint","coordinates":[[21,57.5],[21.01,57.6]]})").places, drawn);
+}
+
 TEST(Routes, ThatCannotBeReadAreRefusedWithTheirPlaceInTheFile) {
   const auto complaint = [](const std::string& text) {
     EXPECT_EQ(code_of([&] { parse_route(text); }), "waypoints-unreadable") << text;
@@ -198,6 +264,8 @@ TEST(Routes, ThatCannotBeReadAreRefusedWithTheirPlaceInTheFile) {
   EXPECT_THAT(complaint("[]"), HasSubstr("must be an object"));
   EXPECT_THAT(complaint(R"({"features":[]})"), HasSubstr("at least two places"));
   EXPECT_THAT(complaint(R"({"type":"Point","coordinates":[21]})"), HasSubstr("coordinates"));
+  EXPECT_THAT(complaint(R"({"geometry":{"type":"Polygon","coordinates":[[[1,2],[1,3],[2,3],[1,2]]]}})"),
+              HasSubstr("geometry is a polygon, which tells no way"));
   EXPECT_THAT(complaint(R"({"type":"LineString","coordinates":[[47,121.5],[1,2]]})"),
               HasSubstr("coordinates[0][1] is 121.5"));
   EXPECT_THAT(complaint(plan(R"({"type":"SimpleItem","command":16,"params":[1,2]})")),
@@ -205,6 +273,7 @@ TEST(Routes, ThatCannotBeReadAreRefusedWithTheirPlaceInTheFile) {
   EXPECT_THAT(complaint(plan(simple_item(16, "\"47\"", "8"))), HasSubstr("mission.items[0].params[4]"));
   EXPECT_THAT(complaint(plan("")), HasSubstr("at least two places"));
   EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 50\n"), HasSubstr("line 2 has 11 numbers"));
+  EXPECT_THAT(complaint("QGC WPL 100\n0 3 16 0 0 50 0 1 8 47 0 50 1\n"), HasSubstr("line 2 has 13 numbers"));
   EXPECT_THAT(complaint("QGC WPL 110\n\n0 1 0 16 0 0 0 0 x 8 50 1\n"), HasSubstr("line 3: 'x' is no number"));
   EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 97 8 50 1\n"), HasSubstr("line 2: latitude 97"));
   EXPECT_THAT(complaint("QGC WPL 110\n0 1 0 16 0 0 0 0 47 8 1e9 1\n"), HasSubstr("line 2: 1000000000 m are no height"));

@@ -145,6 +145,7 @@ void run_frames(const FramesOptions& options) {
   const Pictures pictures = pictures_of(options.pictures, kPhotoEndings);
   const std::vector<fs::path>& files = pictures.files;
   for (const fs::path& file : files) require_apart({options.csv}, {file});
+  require_writable({options.csv});
   const auto take = [&](const fs::path& file) {
     if (auto frame = frame_of(file, folder, options)) frames.push_back(std::move(*frame));
   };

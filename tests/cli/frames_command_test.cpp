@@ -31,11 +31,17 @@ class FramesCommand : public ::testing::Test {
   FramesCommand() { std::filesystem::create_directory(folder / "flight 1"); }
 
   void picture(const std::string& name, const std::string& tags, std::uint8_t film_mm = 0) const {
+    auto jpeg = testing::drone_jpeg(ground(), tags);
+    if (film_mm > 0) testing::add_film_focal_length(jpeg, film_mm);
+    write(name, jpeg);
+  }
+  static cv::Mat ground() {
     cv::Mat ground(90, 120, CV_8UC1);
     cv::theRNG().state = 1;
     cv::randu(ground, 0, 256);
-    auto jpeg = testing::drone_jpeg(ground, tags);
-    if (film_mm > 0) testing::add_film_focal_length(jpeg, film_mm);
+    return ground;
+  }
+  void write(const std::string& name, const std::vector<std::uint8_t>& jpeg) const {
     std::ofstream file(folder / "flight 1" / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(jpeg.data()), static_cast<std::streamsize>(jpeg.size()));
   }
@@ -67,6 +73,20 @@ TEST_F(FramesCommand, MakesATableThatBenchReads) {
   EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[1].view).agl_m, 130.0);
   EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).focal_px.value(), 100.0);
   EXPECT_DOUBLE_EQ(std::get<FrameCamera>(table[0].view).pitch.value().degrees(), 3.0);
+}
+
+TEST_F(FramesCommand, TellsSeveralPicturesOfASecondApart) {
+  for (const char* subseconds : {"75", "25"}) {
+    auto jpeg = testing::drone_jpeg(ground(), tags(100.0));
+    testing::add_time(jpeg, "2023:02:09 11:05:10", subseconds);
+    write(fmt::format("{}.jpg", subseconds), jpeg);
+  }
+  const ProgramResult result = frames(fmt::format("'{}'", (folder / "flight 1").string()));
+  ASSERT_EQ(result.code, 0) << result.err;
+  const auto table = evaluation::parse_frames_csv(result.out);
+  ASSERT_EQ(table.size(), 2U);
+  EXPECT_EQ(table[0].time_s, 1675940710.25);
+  EXPECT_EQ(table[1].time_s, 1675940710.75);
 }
 
 TEST_F(FramesCommand, TellsHeightsAboveTheSeaWhereThatOfTheTakeOffIsTold) {

@@ -43,4 +43,17 @@ inline void add_film_focal_length(std::vector<std::uint8_t>& jpeg, std::uint8_t 
   insert_app1(jpeg, exif);
 }
 
+/// EXIF that tells DateTimeOriginal, "2023:02:09 11:05:10", and SubSecTimeOriginal, of three digits at most.
+inline void add_time(std::vector<std::uint8_t>& jpeg, const std::string& time, std::string subseconds) {
+  std::string exif(
+      "Exif\0\0II*\0\x08\0\0\0"
+      "\x01\0\x69\x87\x04\0\x01\0\0\0\x1a\0\0\0\0\0\0\0"  // the EXIF directory is at byte 26
+      "\x02\0\x03\x90\x02\0\x14\0\0\0\x38\0\0\0"          // the time at byte 56
+      "\x91\x92\x02\0\x04\0\0\0",
+      54);
+  subseconds.resize(4);
+  exif += subseconds + std::string(4, '\0') + time + '\0';
+  insert_app1(jpeg, exif);
+}
+
 }  // namespace roadfix::testing

@@ -87,7 +87,7 @@ std::optional<double> time_of(const Tags& exif) {
                                     chrono::month(static_cast<unsigned>(parts[1])),
                                     chrono::day(static_cast<unsigned>(parts[2])));
   if (!date.ok()) return std::nullopt;
-  const auto fraction = exif.find("EXIF_SubSecTimeOriginal");
+  const auto fraction = exif.find("EXIF_SubSecTime_Original");
   const auto after_point = fraction == exif.end() ? std::vector<double>() : numbers_in("0." + fraction->second);
   const auto days = static_cast<double>(chrono::sys_days(date).time_since_epoch().count());
   return days * 86400.0 + parts[3] * 3600.0 + parts[4] * 60.0 + parts[5] +

@@ -131,7 +131,7 @@ TEST(DronePicture, WasTakenNowhereWhereItsDegreesAreToldToSixDigitsOnly) {
 }
 
 TEST(DronePicture, CountsTimeToTheFractionOfASecond) {
-  EXPECT_THAT(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 11:05:10"}, {"EXIF_SubSecTimeOriginal", "25"}}).time_s,
+  EXPECT_THAT(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 11:05:10"}, {"EXIF_SubSecTime_Original", "25"}}).time_s,
               near_to(1675940710.25));
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:31 11:05:10"}}).time_s);
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:-9 11:05:10"}}).time_s);

@@ -10,6 +10,7 @@
 #include "cli/fly/vehicle.hpp"
 #include "core/detect/frame.hpp"
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -19,6 +20,7 @@ using evaluation::FrameTruth;
 struct Sequence {
   std::string name;
   std::vector<FrameTruth> frames;
+  std::vector<double> times{};  ///< of them, in seconds
 };
 
 /// Frames of one sequence need not follow each other in the file.
@@ -32,23 +34,37 @@ std::vector<Sequence> sequences_of(std::vector<FrameTruth> frames, std::size_t m
   return sequences;
 }
 
-/// Seconds of each frame; the first has `step_s`.
+[[noreturn]] void refuse_time(const FrameTruth& frame, double passed, const FrameTruth& before) {
+  throw InvalidInput("recording-time",
+                     fmt::format("{} was taken {:.3f} s after {}, the frame before it: put the frames of a sequence in "
+                                 "the order of their times, each picture once. Of several frames in a second time_s "
+                                 "has to tell fractions; without time_s they are --step-s apart",
+                                 frame.file.string(), passed, before.file.string()));
+}
+
+/// Seconds of each frame; the first has `step_s`. Those without a time come a step after the one before.
 std::vector<double> times_of(const Sequence& sequence, double step_s) {
+  struct Known {
+    double told_s;
+    double time_s;
+  };
+  std::optional<Known> known;
   std::vector<double> times;
-  const FrameTruth* before = nullptr;
   for (const FrameTruth& frame : sequence.frames) {
-    double passed = step_s;
-    if (before != nullptr && frame.time_s && before->time_s) passed = *frame.time_s - *before->time_s;
-    if (!(passed > 0.0)) {
-      throw InvalidInput("recording-time",
-                         fmt::format("{} was taken {} s after {}, the frame before it: put the frames of a sequence in "
-                                     "the order of their times, each picture once",
-                                     frame.file.string(), passed, before->file.string()));
-    }
-    times.push_back((times.empty() ? 0.0 : times.back()) + passed);
-    before = &frame;
+    const double before = times.empty() ? 0.0 : times.back();
+    double time = before + step_s;
+    if (frame.time_s && known) time = known->time_s + (*frame.time_s - known->told_s);
+    if (!(time > before)) refuse_time(frame, time - before, sequence.frames[times.size() - 1]);
+    if (frame.time_s) known = {*frame.time_s, time};
+    times.push_back(time);
   }
   return times;
+}
+
+void require_there(const std::filesystem::path& folder, const Sequence& sequence) {
+  for (const FrameTruth& frame : sequence.frames) {
+    if (!std::filesystem::exists(folder / frame.file)) read_named_file(folder / frame.file);
+  }
 }
 
 std::optional<Altitude> altitude_of(const FrameTruth& truth, const GridPose& pose, const RecordingOptions& options) {
@@ -84,16 +100,19 @@ RecordedFrame recorded(const std::filesystem::path& folder, FrameTruth truth, do
 
 std::vector<Recording> read_recordings(const std::filesystem::path& csv, const UtmZone& zone,
                                        const RecordingOptions& options, const OnProgress& progress) {
-  const std::vector<Sequence> sequences = sequences_of(evaluation::read_frames_csv(csv), options.max_frames);
+  std::vector<Sequence> sequences = sequences_of(evaluation::read_frames_csv(csv), options.max_frames);
   std::int64_t total = 0;
-  for (const Sequence& sequence : sequences) total += std::ssize(sequence.frames);
+  for (Sequence& sequence : sequences) {  // before the first frame is read, since that takes long
+    total += std::ssize(sequence.frames);
+    sequence.times = times_of(sequence, options.step_s);
+    require_there(csv.parent_path(), sequence);
+  }
   std::vector<Recording> recordings;
   std::int64_t done = 0;
   for (const Sequence& sequence : sequences) {
-    const std::vector<double> times = times_of(sequence, options.step_s);
     Recording recording{sequence.name, {}};
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      recording.frames.push_back(recorded(csv.parent_path(), sequence.frames[i], times[i], zone, options));
+    for (std::size_t i = 0; i < sequence.frames.size(); ++i) {
+      recording.frames.push_back(recorded(csv.parent_path(), sequence.frames[i], sequence.times[i], zone, options));
       ++done;
       if (progress) progress(done, total);
     }

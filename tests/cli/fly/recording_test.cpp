@@ -167,6 +167,27 @@ TEST_F(Recordings, TellTheFiltersFromWhereACameraSawWhatItShows) {
   EXPECT_FALSE(flight[2].input.altitude);
 }
 
+TEST_F(Recordings, KeepTheTimesThatAreToldBesideFramesWithoutOne) {
+  const Flight flight =
+      replayed(recorded("10.png,57.5,21,0,2,a,100\n20.png,57.5,21,0,2,a,\n30.png,57.5,21,0,2,a,110\n").at(0));
+  EXPECT_EQ(flight[1].input.time_us - flight[0].input.time_us, 1'000'000);
+  EXPECT_EQ(flight[2].input.time_us - flight[0].input.time_us, 10'000'000);
+}
+
+TEST_F(Recordings, AreRefusedBeforeTheirFirstFrameIsRead) {
+  int read = 0;
+  const auto complaint = [&](const std::string& lines) {
+    std::ofstream(folder / "frames.csv") << "file,lat,lon,heading_deg,gsd_m,sequence,time_s\n" << lines;
+    return testing::message_of(
+        [&] { read_recordings(folder / "frames.csv", zone, options, [&](std::int64_t, std::int64_t) { ++read; }); });
+  };
+  const std::string whole = "10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,6\n";
+  EXPECT_THAT(complaint(whole + "none.png,57.5,21,0,2,a,7\n"), ::testing::HasSubstr("none.png"));
+  EXPECT_THAT(complaint(whole + "30.png,57.5,21,0,2,b,5\n40.png,57.5,21,0,2,b,5\n"),
+              ::testing::HasSubstr("40.png was taken 0.000 s after 30.png"));
+  EXPECT_EQ(read, 0);
+}
+
 TEST_F(Recordings, ThatCannotBeFlownAreRefused) {
   EXPECT_EQ(code_of([&] { recorded("10.png,57.5,21,0,2,a,5\n20.png,57.5,21,0,2,a,5\n"); }), "recording-time");
   EXPECT_EQ(code_of([&] { recorded("none.png,57.5,21,0,2,a,5\n"); }), "file-not-found");

@@ -8,12 +8,12 @@
 #include <functional>
 
 #include "cli/fly/area.hpp"
-#include "cli/fly/pilot.hpp"
+#include "cli/fly_course.hpp"
 #include "cli/map_notes.hpp"
-#include "cli/route_input.hpp"
 #include "cli/terminal.hpp"
 #include "core/units/error.hpp"
 #include "core/units/index_range.hpp"
+#include "core/units/text.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/view/map_file_view.hpp"
 
@@ -90,6 +90,19 @@ void look_at_recordings(const FlyOptions& options, const MapView& map, Ground& g
   ground.footprint = ground.recordings.front().frames.front().footprint;
 }
 
+void note_frames_beyond(const MapView& map, const Ground& ground, const FlyOptions& options) {
+  std::int64_t all = 0;
+  std::int64_t beyond = 0;
+  for (const fly::Recording& recording : ground.recordings) {
+    all += std::ssize(recording.frames);
+    beyond += std::ranges::count_if(
+        recording.frames, [&](const fly::RecordedFrame& frame) { return !map.extent.contains(frame.truth.position); });
+  }
+  if (beyond == 0) return;
+  fmt::print(stderr, "note: {} of the {} frames of {} were taken beyond the map: no place can be right there\n", beyond,
+             all, options.over);
+}
+
 /// Where the whole footprint lies on the map and on what is flown over, whatever the heading.
 GridBox flying_box(const Footprint& footprint, const GridBox& map, const GridBox& ground) {
   const double margin = 0.5 * std::hypot(footprint.width_m, footprint.height_m);
@@ -105,28 +118,14 @@ GridBox flying_box(const Footprint& footprint, const GridBox& map, const GridBox
                      "the footprint does not fit where map and imagery overlap: make it smaller with --footprint-m");
 }
 
-std::function<std::unique_ptr<fly::Pilot>()> pilots_of(const FlyOptions& options, const GridBox& box,
-                                                       const UtmZone& zone) {
-  const fly::Handling handling = options.plan.handling;
-  if (options.course == "random") return [=] { return fly::make_random_pilot(box, handling); };
-  std::vector<GridPoint> points;
-  if (options.course == "survey") {
-    points = fly::survey_lanes(box, options.lane_m);
-  } else {
-    const routes::Route route = route_with_notes(options.course);
-    for (const routes::RoutePlace& place : route.places) points.push_back(zone.project(place.position));
-  }
-  return [=] { return fly::make_waypoint_pilot(points, handling); };
-}
-
 fly::Flights simulated_flights(const FlyOptions& options, const MapView& map, const Ground& ground,
                                const fly::FlightPlan& plan, int number) {
   const GridBox box = flying_box(ground.footprint, map.extent, ground.box);
-  const auto pilot = pilots_of(options, box, map.zone);
+  const auto pilot = pilots_of(options, box, ground.course);
   return {[=, &ground](int, std::uint64_t seed, const std::function<void()>& seen) {
             return fly::fly(plan, box, *pilot(), *ground.sensor, seed, seen);
           },
-          number, static_cast<std::int64_t>(number) * plan.steps};
+          number, static_cast<std::int64_t>(number) * steps_of(options, ground.course, plan)};
 }
 
 fly::Flights recorded_flights(const Ground& ground, const fly::FlightPlan& plan, int number) {
@@ -175,6 +174,10 @@ fly::LevelFlight level_flight_of(const FlyOptions& options, const MapView& map, 
     throw InvalidInput("option-without-effect",
                        "--alt is for simulated flights that the library follows: leave it out");
   }
+  if (!(options.camera.agl_m > 0.0)) {
+    throw InvalidInput("bad-parameter",
+                       "--agl 0 with --alt: a frame would show --footprint-m from the ground; give a height above 0");
+  }
   required_agl_m(map, ground.box, *options.alt_m);
   return {map.terrain, *options.alt_m, options.camera.agl_m, options.tells_alt};
 }
@@ -188,7 +191,7 @@ MapView map_of(const FlyOptions& options) {
 }
 
 Ground ground_of(const FlyOptions& options, const MapView& map) {
-  const std::filesystem::path kind = std::filesystem::path(options.over).extension();
+  const std::string kind = lower_case(std::filesystem::path(options.over).extension().string());
   const bool over_a_map = options.over.empty() || kind == ".gpkg";
   const bool sends_frames = options.send == "frames";
   if (sends_frames) require_sendable_frames(options, !over_a_map);
@@ -198,6 +201,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
   }
   Ground ground;
   ground.footprint = options.footprint;
+  ground.course = kind == ".csv" ? std::vector<GridPoint>() : course_of(options, map.zone);
   if (over_a_map) {
     look_at_map(options, map, ground);
     return ground;
@@ -205,6 +209,7 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
   if (!sends_frames) ground.detector = detector_for(map, options.detector);
   if (kind == ".csv") {
     look_at_recordings(options, map, ground);
+    note_frames_beyond(map, ground, options);
   } else {
     look_at_imagery(options, map, ground);
   }
@@ -215,10 +220,11 @@ Ground ground_of(const FlyOptions& options, const MapView& map) {
 
 fly::FlightPlan plan_of(const FlyOptions& options, const MapView& map, const Ground& ground) {
   fly::FlightPlan plan = options.plan;
-  plan.steps = options.steps.value_or(plan.steps);
+  plan.steps = options.steps.value_or(ground.course.empty() ? plan.steps : kMostSteps);
   plan.registration_m =
       options.registration_m.value_or(ground.imagery ? 0.0 : map.registration_sigma_m(map.extent.centre()));
-  const int steps = ground.recordings.empty() ? plan.steps : frames_of_the_longest(ground.recordings);
+  const int steps =
+      ground.recordings.empty() ? steps_of(options, ground.course, plan) : frames_of_the_longest(ground.recordings);
   if (!options.outage.empty()) plan.outage = outage_of(options, steps);
   if (!options.kidnap.empty()) plan.kidnapping = kidnapping_of(options, steps);
   if (options.alt_m) plan.level = level_flight_of(options, map, ground);

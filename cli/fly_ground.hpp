@@ -22,6 +22,7 @@ struct Ground {
   std::shared_ptr<const RoadDetector> detector;
   std::unique_ptr<fly::Sensor> sensor;     ///< null where flights were recorded
   std::vector<fly::Recording> recordings;  ///< empty where flights are simulated
+  std::vector<GridPoint> course;           ///< of a file; empty where another is flown
   GridBox box;
   Footprint footprint;  ///< of a recorded flight that of its first frame
   std::string what;

@@ -90,15 +90,17 @@ void add_flight_options(CLI::App& command, FlyOptions& o) {
   };
   add("--course", o.course, "random, survey, or a file: a plan of QGroundControl, waypoints (QGC WPL) or GeoJSON")
       ->type_name("COURSE");
-  add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(positive());
+  add("--lane-m", o.lane_m, "Distance between the lanes of a survey")->check(between(1.0, kMaxNumber));
   add("--area-m", o.area_m,
       "Only the square of this side in the middle of the map, with --server as the bbox where tracks begin; 0 = all")
       ->check(not_negative());
-  command.add_option("--steps", o.steps, "Steps of a flight, at most; default: 100, of a recorded flight all")
+  command
+      .add_option("--steps", o.steps,
+                  "Steps of a flight, at most; default: 100, of a course of a file and of a recorded flight all")
       ->group(kGroup)
-      ->check(CLI::Range(1, 100'000));
+      ->check(CLI::Range(1, kMostSteps));
   add("--step-s", o.plan.handling.step_s, "Seconds between steps; of a recorded flight where it has no times")
-      ->check(positive());
+      ->check(between(0.001, kMaxNumber));
   add("--speed", o.plan.handling.speed_m_s, "Metres per second")->check(not_negative());
   add_angle(command, "--turn-rate", o.plan.handling.turn_rate, "Fastest turn in degrees per second")->group(kGroup);
   const auto show = [&o](const std::vector<double>& sides) { o.footprint = {sides.front(), sides.back()}; };

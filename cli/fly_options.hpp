@@ -15,6 +15,8 @@
 
 namespace roadfix::cli {
 
+inline constexpr int kMostSteps = 100'000;  // of a flight
+
 struct FlyOptions {
   std::string map;
   std::string over;
@@ -24,7 +26,7 @@ struct FlyOptions {
   double area_m = 0.0;
   Footprint footprint{400.0, 400.0};
   fly::FlightPlan plan;
-  std::optional<int> steps;              ///< default: those of the plan; of a recorded flight all
+  std::optional<int> steps;              ///< default: those of the plan; of a course of a file or a recorded flight all
   std::vector<int> outage;               ///< first step without frames and the first with them again; empty = none
   std::vector<double> kidnap;            ///< step and metres; empty = none
   std::optional<double> registration_m;  ///< default: what the map says of itself

@@ -76,6 +76,12 @@ class Sight {
   double scale_ = 1.0;
 };
 
+class ClosedEyes : public Sensor {
+ public:
+  Observation observe(const Outlook&, Random&) const override { return {}; }
+  bool shows(GridPoint) const override { return true; }
+};
+
 }  // namespace
 
 Random motion_stream(std::uint64_t seed) { return stream(seed, kMotion, 0); }
@@ -85,6 +91,13 @@ Random camera_stream(std::uint64_t seed, int step) { return stream(seed, kCamera
 bool frame_comes(const FlightPlan& plan, int step, Random& random) {
   const bool lost = uniform(random, 0.0, 1.0) < plan.missing_share;
   return !lost && step % plan.frame_every == 0 && !(plan.outage && plan.outage->contains(step));
+}
+
+int steps_to_the_end(const FlightPlan& plan, Pilot& pilot, std::uint64_t seed) {
+  FlightPlan course = plan;
+  course.kidnapping.reset();
+  course.level.reset();
+  return static_cast<int>(fly(course, {}, pilot, ClosedEyes(), seed, [] {}).size());
 }
 
 Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,

@@ -72,6 +72,9 @@ evaluation::Random camera_stream(std::uint64_t seed, int step);
 /// Whether the plan has a frame at this step, some of them lost at random.
 bool frame_comes(const FlightPlan& plan, int step, evaluation::Random& random);
 
+/// How many steps a pilot takes to the end of its course, at most those of the plan, kidnapped nowhere.
+int steps_to_the_end(const FlightPlan& plan, Pilot& pilot, std::uint64_t seed);
+
 /// Equal arguments give equal flights; what the steps see does not depend on the other steps. `seen` is called after
 /// each step. Throws InvalidInput "no-place-to-fly", "kidnapping-too-far".
 Flight fly(const FlightPlan& plan, const GridBox& box, Pilot& pilot, const Sensor& sensor, std::uint64_t seed,

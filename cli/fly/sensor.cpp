@@ -113,7 +113,7 @@ class SimulatedSensor : public Sensor {
 
   Observation observe(const Outlook& from, evaluation::Random& random) const override {
     const auto cells = [&](double metres) {
-      return static_cast<int>(std::lround(from.scale * metres / ground_.geometry.cell_m));
+      return std::max(1, static_cast<int>(std::lround(from.scale * metres / ground_.geometry.cell_m)));
     };
     const double margin = from.relief ? kMargin : 1.0;
     FeatureMap features = simulate_features(ground_, from.pose, cells(margin * footprint_.width_m),

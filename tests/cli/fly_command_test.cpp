@@ -150,6 +150,31 @@ TEST_F(FlyCommand, ReplaysAFlightByItsHeightsAboveTheSeaOverAMapThatKnowsThatOfI
 }
 
 /// Its detector has started threads by the time that it is ready to stop, and a signal goes to any that takes it.
+TEST_F(FlyCommand, FliesACourseOfAFileToItsEnd) {
+  std::ofstream(file("course.geojson"))
+      << R"({"type":"LineString","coordinates":[[38.2730,37.7625],[38.2730,37.7655],[38.2765,37.7655],[38.2765,37.7625]]})";
+  const std::string flight = "fly " + map() + " --footprint-m 200 --particles 300 --frame-every 50 --course " +
+                             file("course.geojson") + " --speed 5 --turn-rate ";
+  const auto steps_of = [&](const std::string& more) {
+    const ProgramResult flown = roadfix(flight + "30" + more + " --json " + file("course.json"));
+    EXPECT_EQ(flown.code, 0) << flown.err;
+    return nlohmann::json::parse(text_of(file("course.json")))["filters"]["default"]["flights"][0]["steps"].get<int>();
+  };
+  // 333 m north, 308 m east and 333 m back south; the last steps and the corners are cut by the turning circle.
+  EXPECT_NEAR(steps_of(""), (333 + 308 + 333) / 5, 15);
+  EXPECT_EQ(steps_of(" --steps 20"), 20);
+  EXPECT_THAT(roadfix(flight + "0").err, HasSubstr("is not flown to its end in 100000 steps"));
+}
+
+TEST_F(FlyCommand, SaysWhichFramesOfARecordedFlightWereTakenBeyondTheMap) {
+  std::ofstream(file("town/frames/BEYOND.CSV"))
+      << "file,time_s,lat,lon,heading_deg,gsd_m\nframe_01.png,1,37.764,38.275,0,1\nframe_02.png,999,37.8,38.275,0,1\n";
+  const ProgramResult flown = roadfix("fly " + map() + " --over " + file("town/frames/BEYOND.CSV") +
+                                      " --detector tree --tree-roots 500 --particles 300");
+  EXPECT_EQ(flown.code, 0) << flown.err;
+  EXPECT_THAT(flown.err, HasSubstr("note: 1 of the 2 frames"));
+}
+
 TEST_F(FlyCommand, StopsInGoodOrderAtASignal) {
   const std::string flight = ROADFIX_PROGRAM " fly " + map() + " --over " + after() +
                              " --detector tree --tree-roots 500 --footprint-m 300 --runs 1000 --particles 500";
@@ -175,6 +200,10 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
   EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
   EXPECT_EQ(roadfix("fly " + map() + " --erase 20").code, 2);
+  EXPECT_EQ(roadfix("fly " + map() + " --course survey --lane-m 0.001").code, 2);
+  EXPECT_EQ(roadfix("fly " + map() + " --step-s 1e-9").code, 2);
+  EXPECT_EQ(roadfix("fly " + map() + " --footprint-m 0.1 --steps 2 --particles 300").code, 0) << "it shows a cell";
+  EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --alt 900 --agl 0").err, HasSubstr("--agl 0 with --alt"));
   const std::string eight_steps = "fly " + map() + " --footprint-m 200 --steps 8";
   EXPECT_THAT(roadfix(eight_steps + " --kidnap 8,200").err, HasSubstr("comes after the flight"));
   EXPECT_THAT(roadfix(eight_steps + " --kidnap 2.5,200").err, HasSubstr("lies between two steps"));

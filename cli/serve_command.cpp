@@ -131,7 +131,8 @@ void add_resources(CLI::App& command, ServeOptions& o) {
   auto& tracks = o.service.track_limits;
   OptionGroup group(command, "Resources");
   group.number("--threads", http.threads, "Connections served at the same time", kMaxThreads);
-  group.number("--searches", http.heavy_running, "Searches and detections at the same time");
+  group.number("--searches", http.heavy_running,
+               "Searches and detections at the same time, and as many steps of tracks");
   group.number("--searches-waiting", http.heavy_waiting, "Searches and detections that may wait; further ones get 503");
   group.number("--search-threads", o.service.search_threads,
                "Threads of a search; searches that run at the same time share them", kMaxThreads);

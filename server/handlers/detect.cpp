@@ -47,7 +47,7 @@ http::Response post_detect(const Service& service, const http::Request& request)
 }  // namespace
 
 void add_detect_route(Routes& routes) {
-  routes.add("POST", "/v1/detect", detect_fields(), post_detect, http::Load::kHeavyAnswer);
+  routes.add("POST", "/v1/detect", detect_fields(), post_detect, http::Load::kHeavy);
 }
 
 }  // namespace roadfix::server

@@ -73,7 +73,7 @@ http::Response post_fix(const Service& service, const http::Request& request) {
 }  // namespace
 
 void add_fix_route(Routes& routes) {
-  routes.add("POST", "/v1/maps/{map}/fix", fix_fields(), post_fix, http::Load::kHeavyAnswer);
+  routes.add("POST", "/v1/maps/{map}/fix", fix_fields(), post_fix, http::Load::kHeavy);
 }
 
 }  // namespace roadfix::server

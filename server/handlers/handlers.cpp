@@ -17,7 +17,7 @@ void Routes::add(const char* method, const char* path, std::vector<std::string> 
 }
 
 void Routes::add_prepared(const char* method, const char* path, std::vector<std::string> parameters, Prepare prepare) {
-  http::Route route{method, path, std::move(parameters), http::Load::kHeavy, {}};
+  http::Route route{method, path, std::move(parameters), http::Load::kLive, {}};
   route.prepare = [&service = service_, prepare = std::move(prepare)](http::Request& request) {
     return prepare(service, request);
   };

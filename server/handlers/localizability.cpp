@@ -230,10 +230,10 @@ http::Response get_localizability_tilejson(const Service& service, const http::R
 
 void add_localizability_routes(Routes& routes) {
   routes.add("GET", "/v1/maps/{map}/localizability", {"lat", "lon", "footprint_m", "radius_m"}, get_localizability,
-             http::Load::kHeavyAnswer);
+             http::Load::kHeavy);
   routes.add("POST", "/v1/maps/{map}/localizability",
              {"footprint_m", "fov_deg", "aspect", "agl_m", "radius_m", "every_m", "places", "from_m", "limit"},
-             post_route, http::Load::kHeavyAnswer);
+             post_route, http::Load::kHeavy);
   // Not among the heavy requests: a screen of these tiles must not hold up a fix.
   const auto tiles = std::make_shared<Tiles>(routes.service().http.threads / kThreadsPerWaiting);
   routes.add(

@@ -33,7 +33,7 @@ http::Response post_match(const Service& service, const http::Request& request) 
 }  // namespace
 
 void add_match_route(Routes& routes) {
-  routes.add("POST", "/v1/maps/{map}/match", match_fields(), post_match, http::Load::kHeavyAnswer);
+  routes.add("POST", "/v1/maps/{map}/match", match_fields(), post_match, http::Load::kHeavy);
 }
 
 }  // namespace roadfix::server

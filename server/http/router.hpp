@@ -13,9 +13,9 @@ namespace roadfix::http {
 
 enum class Load {
   kLight,
-  kLong,         ///< light, but it may hold its thread for long: it waits its turn in a queue of its own, or streams
-  kHeavy,        ///< a search or a detection: waits its turn, since only so many of these run at a time
-  kHeavyAnswer,  ///< heavy, and for the sake of its answer alone: given up when the client hangs up
+  kLong,   ///< light, but it may hold its thread for long: it waits its turn in a queue of its own, or streams
+  kHeavy,  ///< a search or a detection: waits its turn, since only so many run at a time; given up with its client
+  kLive,   ///< as heavy, but a flight goes on from it: it is not given up, and its turns are beside those of the others
 };
 
 /// An answer that needs no turn, or what gives it in one.

@@ -32,13 +32,18 @@ Server::Impl::Impl(ServerSettings settings, Router router, ErrorResponse on_erro
       on_error_(std::move(on_error)),
       metrics_(metrics),
       cors_(settings_.cors_origin),
-      admission_(settings_.heavy_running, settings_.heavy_waiting),
+      heavy_turns_(settings_.heavy_running, settings_.heavy_waiting),
+      live_turns_(settings_.heavy_running, settings_.heavy_waiting),
       body_memory_(std::max(settings_.all_bodies_bytes, settings_.body_bytes)),
       held_threads_(settings_.threads),
       access_log_(settings_.access_log) {
-  metrics_.gauge("roadfix_heavy_running", "Searches and detections that run.", [this] { return admission_.running(); });
-  metrics_.gauge("roadfix_heavy_waiting", "Searches and detections that wait their turn.",
-                 [this] { return admission_.waiting(); });
+  const auto show = [&](const std::string& load, const std::string& what, const Admission& turns) {
+    metrics_.gauge("roadfix_" + load + "_running", what + " that run.", [&turns] { return turns.running(); });
+    metrics_.gauge("roadfix_" + load + "_waiting", what + " that wait their turn.",
+                   [&turns] { return turns.waiting(); });
+  };
+  show("heavy", "Searches and detections", heavy_turns_);
+  show("live", "Steps of tracks", live_turns_);
   set_tcp_nodelay(true);
   // The connection loop (server_connection.cpp) is ours; these are what the Keep-Alive header says.
   set_keep_alive_max_count(kKeepAliveRequests);

@@ -66,7 +66,8 @@ class Server::Impl : public httplib::Server {
   const ErrorResponse on_error_;
   Metrics& metrics_;
   const Cors cors_;
-  Admission admission_;
+  Admission heavy_turns_;
+  Admission live_turns_;
   ByteBudget body_memory_;
   HeldThreads held_threads_;
   AccessLog access_log_;

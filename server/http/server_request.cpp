@@ -187,7 +187,7 @@ void Server::Impl::with_body(const httplib::Request&, httplib::Response& out, co
 void Server::Impl::hold_thread(Exchange& exchange) {
   const Load load = exchange.match.route->load;
   if (load == Load::kLong) exchange.thread.take(held_threads_);
-  if (load == Load::kHeavy || load == Load::kHeavyAnswer) exchange.thread.take_in_advance(held_threads_);
+  if (load == Load::kHeavy || load == Load::kLive) exchange.thread.take_in_advance(held_threads_);
 }
 
 Response Server::Impl::answered(Exchange& exchange) {
@@ -202,9 +202,10 @@ Response Server::Impl::answered(Exchange& exchange) {
     Prepared prepared = [&] { return route.handler(request); };
     if (route.prepare) prepared = route.prepare(request);
     if (auto* response = std::get_if<Response>(&prepared)) return std::move(*response);
-    const auto given_up = route.load == Load::kHeavyAnswer ? request.abandoned : nullptr;
-    const Admission::Ticket ticket =
-        admission_.enter(request.client, whole + settings_.turn_time, given_up, held_threads_.too_many());
+    const bool live = route.load == Load::kLive;
+    Admission& turns = live ? live_turns_ : heavy_turns_;
+    const Admission::Ticket ticket = turns.enter(request.client, whole + settings_.turn_time,
+                                                 live ? nullptr : request.abandoned, held_threads_.too_many());
     request.deadline = Clock::now() + settings_.request_time;
     return std::get<std::function<Response()>>(prepared)();
   } catch (const Interrupted&) {

@@ -45,17 +45,18 @@ class HttpServerTest : public ::testing::Test {
     router_.add({"POST", "/length", {}, http::Load::kHeavy, [](const http::Request& request) {
                    return http::Response{200, "text/plain", std::to_string(request.body.size())};
                  }});
-    router_.add({"POST", "/wait", {}, http::Load::kHeavy, [this](const http::Request&) {
+    for (const auto& [path, load] : {std::pair("/wait", http::Load::kHeavy), std::pair("/step", http::Load::kLive)}) {
+      router_.add({"POST", path, {}, load, [this](const http::Request&) {
+                     ++waiting_;
+                     while (!go_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                     return http::Response{200, "text/plain", "waited"};
+                   }});
+    }
+    router_.add({"POST", "/answer", {}, http::Load::kHeavy, [this](const http::Request& request) -> http::Response {
                    ++waiting_;
-                   while (!go_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-                   return http::Response{200, "text/plain", "waited"};
+                   while (!request.abandoned()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+                   throw Interrupted("search-interrupted", "as searches do");
                  }});
-    router_.add(
-        {"POST", "/answer", {}, http::Load::kHeavyAnswer, [this](const http::Request& request) -> http::Response {
-           ++waiting_;
-           while (!request.abandoned()) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-           throw Interrupted("search-interrupted", "as searches do");
-         }});
     router_.add({"POST", "/times", {}, http::Load::kHeavy, [this](const http::Request& request) {
                    received_ = request.received;
                    deadline_ = request.deadline;

@@ -309,16 +309,28 @@ TEST_F(HttpServerTimes, DoesWhatIsMoreThanAnAnswerThoughItsClientHungUp) {
   settings_.heavy_running = 1;
   settings_.turn_time = 10min;
   const auto server = started();
-  const std::jthread first([&] { client().Post("/wait", "", "text/plain"); });
+  const std::jthread first([&] { client().Post("/step", "", "text/plain"); });
   EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
   {
     testing::RawConnection queued(port_);
-    queued.send("POST /wait" + std::string(kEmptyPost));
-    wait_for_figure("roadfix_heavy_waiting 1");
+    queued.send("POST /step" + std::string(kEmptyPost));
+    wait_for_figure("roadfix_live_waiting 1");
   }
   std::this_thread::sleep_for(300ms);
   go_ = true;
-  wait_for_figure(R"(route="/wait",status="200"} 2)");
+  wait_for_figure(R"(route="/step",status="200"} 2)");
+}
+
+TEST_F(HttpServerTimes, LetsNoFlightWaitForTheTurnsOfSearches) {
+  settings_.heavy_running = 1;
+  settings_.turn_time = 10min;
+  const auto server = started();
+  testing::RawConnection search(port_);
+  search.send("POST /answer" + std::string(kEmptyPost));
+  EXPECT_TRUE(eventually([&] { return waiting_ > 0; }));
+  go_ = true;
+  EXPECT_EQ(client().Post("/step", "", "text/plain")->body, "waited");
+  wait_for_figure("roadfix_heavy_running 1");
 }
 
 TEST_F(HttpServerTimes, SendsAwayWhatHasWaitedTooLongForItsTurn) {

@@ -15,7 +15,7 @@ enum class Load {
   kLight,
   kLong,   ///< light, but it may hold its thread for long: it waits its turn in a queue of its own, or streams
   kHeavy,  ///< a search or a detection: waits its turn, since only so many run at a time; given up with its client
-  kLive,   ///< as heavy, but a flight goes on from it: it is not given up, and its turns are beside those of the others
+  kLive,   ///< as heavy, but a flight goes on from it: not given up, with turns beside those of others, which give way
 };
 
 /// An answer that needs no turn, or what gives it in one.

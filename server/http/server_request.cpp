@@ -8,6 +8,7 @@
 
 #include "core/units/error.hpp"
 #include "server/http/errors.hpp"
+#include "server/http/give_way.hpp"
 #include "server/http/server_impl.hpp"
 
 namespace roadfix::http {
@@ -207,7 +208,8 @@ Response Server::Impl::answered(Exchange& exchange) {
     const Admission::Ticket ticket = turns.enter(request.client, whole + settings_.turn_time,
                                                  live ? nullptr : request.abandoned, held_threads_.too_many());
     request.deadline = Clock::now() + settings_.request_time;
-    return std::get<std::function<Response()>>(prepared)();
+    const auto& work = std::get<std::function<Response()>>(prepared);
+    return live ? work() : giving_way(work);
   } catch (const Interrupted&) {
     const bool gone = exchange.request.abandoned();
     return failed(exchange, gone ? std::make_exception_ptr(ClientGone()) : std::current_exception());

@@ -164,7 +164,7 @@ nlohmann::json to_json(const Summary& s) {
 }
 
 std::string to_table(std::span<const std::pair<std::string, Summary>> summaries, const Events& events) {
-  constexpr std::string_view kRow = "{:<11}{:>6}{:>7}{:>14}{:>16}{:>16}{:>7}{:>15}{:>13}{:>12}{:>7}{:>15}\n";
+  constexpr std::string_view kRow = "{:<11} {:>5} {:>6} {:>13} {:>15} {:>15} {:>6} {:>14} {:>12} {:>11} {:>6} {:>14}\n";
   std::string table = fmt::format(kRow, "filter", "runs", "found", "updates (90%)", "error m (90%)", "final m (90%)",
                                   "wrong", "claims (at)", "false steps", "NEES", "in 95", "ms/step (95%)");
   for (const auto& [name, s] : summaries) {

@@ -70,6 +70,15 @@ TEST(FlightSummary, KeepsItsColumnsApartWhereClaimsAreKilometresOff) {
   EXPECT_THAT(to_table(std::vector<std::pair<std::string, Summary>>{{"paper", s}}, {}), HasSubstr("22/22  22522178.4"));
 }
 
+TEST(FlightSummary, KeepsItsColumnsApartWhereABusyServiceTakesSecondsAStep) {
+  Summary s;
+  s.within_95 = 1.0;
+  s.step_ms_median = 2135.8;
+  s.step_ms_p95 = 23614.7;
+  EXPECT_THAT(to_table(std::vector<std::pair<std::string, Summary>>{{"default", s}}, {}),
+              HasSubstr(" 1.00 2135.8 (23614.7)"));
+}
+
 TEST(FlightSummary, TellsHowLongAKidnappingWentUnnoticedAndUntilTheVehicleWasFoundAgain) {
   const std::vector<double> errors =
       joined(joined(many(20, -5.0), many(3, -2000.0)), joined(many(7, 2000.0), many(20, -5.0)));

@@ -81,7 +81,9 @@ Boresight boresight_of(std::span<const BoresightSighting> sightings, const Bores
   const auto used = static_cast<double>(found.used_count());
   found.told_rms_m = std::sqrt(told / used);
   found.corrected_rms_m = std::sqrt(left / used);
-  found.attitude_sigma = Angle::radians(std::sqrt(turned / (2.0 * used)));
+  const Angle scatter = Angle::radians(std::sqrt(turned / (2.0 * used)));
+  const double mount_deg = std::max(found.pitch_deg.sigma, found.roll_deg.sigma);
+  found.attitude_sigma = Angle::degrees(std::hypot(scatter.degrees(), mount_deg));
   return found;
 }
 

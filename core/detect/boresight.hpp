@@ -52,8 +52,8 @@ struct Boresight {
   Estimate east_m, north_m;         ///< of the map against the told places
   bool is_roll_reversed = false;    ///< what is told has the wrong sign; the mount is beside what is right
   bool is_pitch_reversed = false;
-  /// How well roll and pitch are known once all of this is told, 1 sigma each: FrameCamera::attitude_sigma. What else
-  /// the places scatter by counts as theirs.
+  /// How well roll and pitch are known once all of this is told, 1 sigma each: FrameCamera::attitude_sigma. What the
+  /// mount is uncertain by counts, and what else the places scatter by.
   Angle attitude_sigma;
   std::vector<bool> used;        ///< by sighting: it does not lie elsewhere
   double told_rms_m = 0.0;       ///< how far the used sightings are found from where they are told

@@ -215,6 +215,7 @@ TEST(BoresightOfAFlight, DoesNotTellAMountFromAMapThatIsOffWhereAllHeadingsAreAl
   const Boresight all = boresight_of(SimulatedFlight{.lean_deg = 0.5}.fly(2), {.place_sigma_m = 4.0});
   EXPECT_GT(one.pitch_deg.sigma, 0.7 * 4.0 / 300.0 * 180.0 / M_PI);
   EXPECT_LT(all.pitch_deg.sigma, 0.25);
+  EXPECT_GT(one.attitude_sigma.degrees(), one.pitch_deg.sigma) << "on a flight with another heading it shows";
 }
 
 TEST(BoresightOfAFlight, TellsADelayFromAMountByDifferentSpeedsOnly) {

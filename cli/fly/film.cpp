@@ -8,6 +8,7 @@
 #include <fstream>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
 #include "core/units/error.hpp"
@@ -143,26 +144,59 @@ cv::Rect changed_part(const cv::Mat& before, const cv::Mat& frame) {
 
 }  // namespace
 
-void Film::add(const cv::Mat& picture) {
-  assert(frames_.empty() || frames_.front().size() == picture.size());
-  frames_.push_back(indexed(picture));
+/// Shows a film's frames one after the other.
+class Film::Player {
+ public:
+  explicit Player(const Film& film) : film_(film) {}
+
+  /// CV_8UC1, indices of the palette.
+  cv::Mat next() {
+    const cv::Mat change = cv::imdecode(film_.changes_.at(next_++), cv::IMREAD_GRAYSCALE);
+    shown_ = shown_.empty() ? change : cv::Mat(shown_ ^ change);
+    return shown_;
+  }
+
+ private:
+  const Film& film_;
+  std::size_t next_ = 0;
+  cv::Mat shown_;
+};
+
+void Film::add(const cv::Mat& picture) { keep(indexed(picture)); }
+
+void Film::keep(const cv::Mat& indices) {
+  assert(last_.empty() || last_.size() == indices.size());
+  const cv::Mat change = last_.empty() ? indices : cv::Mat(last_ ^ indices);
+  cv::imencode(".png", change, changes_.emplace_back(), {cv::IMWRITE_PNG_COMPRESSION, 1});
+  last_ = indices;
 }
 
 void Film::append_right(const Film& other) {
-  assert(frames_.size() == other.frames_.size());
-  for (std::size_t i = 0; i < frames_.size(); ++i) cv::hconcat(frames_[i], other.frames_[i], frames_[i]);
+  assert(size() == other.size());
+  Film both;
+  Player left(*this);
+  Player right(other);
+  for (std::size_t i = 0; i < size(); ++i) {
+    cv::Mat beside;
+    cv::hconcat(left.next(), right.next(), beside);
+    both.keep(beside);
+  }
+  *this = std::move(both);
 }
 
 void Film::write(const std::string& file, int frames_per_second) const {
-  assert(!frames_.empty());
+  assert(size() > 0);
   constexpr int kLastHundredths = 200;
   Writer writer(file);
-  writer.start(frames_.front().size());
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
-    const bool last = i + 1 == frames_.size();
-    const cv::Rect all({0, 0}, frames_[i].size());
-    writer.add(frames_[i], i == 0 ? all : changed_part(frames_[i - 1], frames_[i]),
-               last ? kLastHundredths : 100 / frames_per_second);
+  writer.start(last_.size());
+  Player player(*this);
+  cv::Mat before;
+  for (std::size_t i = 0; i < size(); ++i) {
+    const bool is_last = i + 1 == size();
+    const cv::Mat frame = player.next();
+    writer.add(frame, i == 0 ? cv::Rect({0, 0}, frame.size()) : changed_part(before, frame),
+               is_last ? kLastHundredths : 100 / frames_per_second);
+    before = frame;
   }
   writer.finish();
 }

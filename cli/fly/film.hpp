@@ -10,16 +10,20 @@ namespace roadfix::fly {
 
 class Film {
  public:
-  /// CV_8UC3, all of one size. Kept with 256 fixed colours, a byte for each pixel.
+  /// CV_8UC3, all of one size. Kept with 256 fixed colours, of all frames but the first what changes, compressed.
   void add(const cv::Mat& picture);
-  std::size_t size() const { return frames_.size(); }
+  std::size_t size() const { return changes_.size(); }
   /// Frame i of this film beside frame i of the other; both equally long and high.
   void append_right(const Film& other);
   /// Repeats for ever. Throws IoFailure "result-unwritable".
   void write(const std::string& file, int frames_per_second) const;
 
  private:
-  std::vector<cv::Mat> frames_;  ///< CV_8UC1, indices of the palette
+  class Player;
+  void keep(const cv::Mat& indices);
+
+  std::vector<std::vector<unsigned char>> changes_;  ///< PNG of indices of the palette, exclusive or with those before
+  cv::Mat last_;                                     ///< CV_8UC1, the indices of the last frame
 };
 
 }  // namespace roadfix::fly

@@ -175,11 +175,5 @@ TEST(FilterNames, RunFromThePapersFilterToTheDefaultAndOthersAreRefused) {
   EXPECT_EQ(code_of([] { filter_named("papr", 700); }), "filter-unknown");
 }
 
-TEST(Films, ThatCannotBeWrittenSaySo) {
-  Film film;
-  film.add(cv::Mat(20, 20, CV_8UC3, cv::Scalar(10, 200, 30)));
-  EXPECT_EQ(code_of([&] { film.write("/nowhere/at/all.gif", 8); }), "result-unwritable");
-}
-
 }  // namespace
 }  // namespace roadfix::fly

@@ -84,8 +84,8 @@ void survey_map(const LocalizabilityArguments& arguments, const MapView& map, Su
   arguments.as_json ? print_json(map, options, found) : print_text(map, options, found);
 }
 
-RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
-  const routes::Route route = route_with_notes(arguments.route);
+RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const routes::Route& route, const MapView& map,
+                           const SurveyOptions& options) {
   std::optional<DownwardCamera> camera;
   if (arguments.fov) camera = DownwardCamera{*arguments.fov, arguments.aspect};
   Progress progress("searching", "places");
@@ -102,13 +102,15 @@ RouteSurvey surveyed_route(const LocalizabilityArguments& arguments, const MapVi
 void survey_along_route(const LocalizabilityArguments& arguments, const MapView& map, const SurveyOptions& options) {
   require_apart({arguments.geojson_file}, {arguments.map, arguments.route});
   require_writable({arguments.geojson_file});
-  const RouteSurvey found = surveyed_route(arguments, map, options);
+  const routes::Route route = route_with_notes(arguments.route);
+  const RouteSurvey found = surveyed_route(arguments, route, map, options);
   std::FILE* out = printed_beside({arguments.geojson_file});
   if (arguments.as_json) {
     nlohmann::json answer = asked_json(map);
     if (arguments.footprint_m) answer["footprint_m"] = *arguments.footprint_m;
     if (arguments.fov) answer.update({{"fov_deg", arguments.fov->degrees()}, {"aspect", arguments.aspect}});
     answer.update(api::summary_json(found));
+    answer["left_out"] = route.left_out;
     fmt::print(out, "{}\n", json_text(answer, 2));
   } else {
     fmt::print(out, "{}", route_text(found, arguments.route, arguments.footprint_m));

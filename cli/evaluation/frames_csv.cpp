@@ -132,8 +132,9 @@ std::vector<std::string_view> names_in(std::string_view header) {
   }
   for (const std::string_view name : {"file", "lat", "lon", "heading_deg"}) {
     if (has(name)) continue;
-    refuse(1, fmt::format("the column '{}' is missing{}", name,
-                          header.find(';') == std::string_view::npos ? "" : "; columns are separated by commas"));
+    refuse(1, fmt::format(
+                  "the column '{}' is missing{}", name,
+                  header.find_first_of(";\t") == std::string_view::npos ? "" : "; columns are separated by commas"));
   }
   if (!has("gsd_m") && !has("agl_m") && !has("alt_m")) {
     refuse(1, "there is neither a column 'gsd_m' nor 'agl_m' nor 'alt_m'");
@@ -150,7 +151,7 @@ std::vector<FrameTruth> parse_frames_csv(std::string_view text) {
   for (std::string_view row : split(without_byte_order_mark(text), '\n')) {
     ++line;
     if (row.ends_with('\r')) row.remove_suffix(1);
-    if (row.empty()) continue;
+    if (row.find_first_not_of(", \t") == std::string_view::npos) continue;  // spreadsheets write empty rows, too
     refuse_quotes(row, line);
     if (!names) {
       names = names_in(row);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -79,10 +80,18 @@ Route line_in(const JsonField& document) {
   return line.places.empty() ? points : line;
 }
 
+/// Lines that lie on the ground have heights of 0 where they were KML, as Google Earth draws them.
+void forget_heights_of_zero(std::vector<RoutePlace>& places) {
+  const auto is_zero = [](const RoutePlace& place) { return place.height && place.height->metres == 0.0; };
+  if (!std::ranges::all_of(places, is_zero)) return;
+  for (RoutePlace& place : places) place.height.reset();
+}
+
 }  // namespace
 
 Route parse_geojson_line(const JsonField& document) {
   Route route = line_in(document);
+  forget_heights_of_zero(route.places);
   if (!route.places.empty()) route.home.position = route.places.front().position;
   return route;
 }

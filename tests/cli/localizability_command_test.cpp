@@ -41,7 +41,7 @@ TEST_F(LocalizabilityCommand, OfARouteSaysWhereAFlightHasFixesAndHowLongItGoesWi
     return fmt::format("{} 0 3 16 0 0 0 0 {:.9f} {:.9f} 300 1\n", number, at.lat_deg, at.lon_deg);
   };
   const std::filesystem::path mission = folder / "mission.waypoints";
-  std::ofstream(mission) << "QGC WPL 110\n" << waypoint(0, 0.0) << waypoint(1, 2000.0);
+  std::ofstream(mission) << "QGC WPL 110\n" << waypoint(0, 0.0) << waypoint(1, 2000.0) << "2 0 3 177 1 1 0 0 0 0 0 1\n";
   const std::string ask = "localizability " + map.string() + " --footprint-m 400 --route " + mission.string();
 
   const ProgramResult told = roadfix(ask);
@@ -59,6 +59,7 @@ TEST_F(LocalizabilityCommand, OfARouteSaysWhereAFlightHasFixesAndHowLongItGoesWi
   EXPECT_NEAR(answer["length_m"].get<double>(), 2000.0, 0.1);
   EXPECT_EQ(answer["distinct"], 0.5);
   EXPECT_EQ(answer["unknown"], 0.5);
+  EXPECT_THAT(answer["left_out"].at(0).get<std::string>(), HasSubstr("line 4, a jump"));
   EXPECT_EQ(answer["first_fix_m"], 0.0);
   EXPECT_NEAR(answer["longest_without_fix"]["from_m"].get<double>(), 1000.0, 0.1);
   const auto features = nlohmann::json::parse(std::ifstream(pieces))["features"];

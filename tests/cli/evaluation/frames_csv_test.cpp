@@ -47,9 +47,14 @@ TEST(FramesCsv, OfAnotherSpreadsheetThanCanBeReadIsRefusedForWhatItIs) {
     EXPECT_THAT([=] { parse_frames_csv(text); }, ThrowsMessage<InvalidInput>(HasSubstr(what))) << text;
   };
   told("file;lat;lon;heading_deg;gsd_m\na;1;1;0;1\n", "columns are separated by commas");
+  told("file\tlat\tlon\theading_deg\tgsd_m\na\t1\t1\t0\t1\n", "columns are separated by commas");
   told("file,lat,lon,heading_deg,gsd_m\n\"a, b\",1,1,0,1\n", "line 2: it has quotes");
   told("\"file\",\"lat\",\"lon\",\"heading_deg\",\"gsd_m\"\n", "line 1: it has quotes");
   told("file,lat,lon,heading_deg,gsd_m\na,1,5,1,5,0,0,5\n", "it has 8 fields, and the header 5");
+}
+
+TEST(FramesCsv, PassesOverTheEmptyRowsOfSpreadsheets) {
+  EXPECT_EQ(parse_frames_csv("file,lat,lon,heading_deg,gsd_m\r\n,,,,\r\na,1,1,0,1\r\n , ,,,\r\n").size(), 1u);
 }
 
 TEST(FramesCsv, MayComeFromASpreadsheetWithAByteOrderMarkAndBlanks) {

@@ -244,6 +244,15 @@ TEST(Routes, OfGeoJsonAreTheFirstLineOrAllPoints) {
               ElementsAre(place(1, 179), place(1, 180), place(1, -180), place(1, -179)));
 }
 
+TEST(Routes, OfGeoJsonWhoseHeightsAreAllZeroTellNone) {
+  const auto heights = [](const char* first, const char* second) {
+    return heights_of(parse_route(std::string(R"({"type":"LineString","coordinates":[[21,57.5,)") + first +
+                                  "],[21.01,57.6," + second + "]]}"));
+  };
+  EXPECT_THAT(heights("0", "0.0"), ElementsAre(Height{}, Height{}));
+  EXPECT_THAT(heights("0", "120"), ElementsAre(above_sea(0), above_sea(120)));
+}
+
 TEST(Routes, OfGeoJsonAreFoundInCollectionsOfGeometries) {
   const auto collection = [](const std::string& members) {
     return R"({"type":"GeometryCollection","geometries":[)" + members + "]}";

@@ -79,6 +79,8 @@ std::string lacks(const DronePicture& picture, const std::optional<double>& heig
   }
   if (!missing.empty()) return fmt::format("its file does not tell {}", fmt::join(missing, ", nor "));
   if (picture.doubt) return "its file " + picture.doubt->what;
+  constexpr double kHighestM = 100'000.0;
+  if (std::abs(*height_m) > kHighestM) return fmt::format("its file tells a height of {:g} m", *height_m);
   if (!options.takeoff_alt_m && *height_m <= 0.0) return fmt::format("it was taken {:.1f} m above ground", *height_m);
   constexpr double kAnyAglM = 1.0;  // how high it was is no matter of where it looked
   return looks_down(camera_of(picture, {kAnyAglM, {}, {}})) ? "" : "its camera looked at the horizon or the sky";
@@ -191,8 +193,10 @@ void add_frames_command(CLI::App& app) {
       ->check([](const std::string& name) {
         return fits_a_cell(name) ? "" : "no table of frames can hold commas, quotes, line breaks or outer blanks";
       });
-  command->add_option("--takeoff-agl", options->takeoff_agl_m,
-                      "How many metres the take-off lay above the ground in the pictures; default: 0");
+  command
+      ->add_option("--takeoff-agl", options->takeoff_agl_m,
+                   "How many metres the take-off lay above the ground in the pictures; default: 0")
+      ->check(between(-api::kAltitude.max, api::kAltitude.max));
   command
       ->add_option("--takeoff-alt", options->takeoff_alt_m,
                    "Height of the take-off's ground above the sea in metres: the table has heights above the sea "

@@ -111,6 +111,7 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
   picture("good.jpg", tags(120.0));
   picture("bare.jpg", "");
   picture("ground.jpg", tags(-1.0));
+  picture("space.jpg", tags(1e6));
   std::string ahead = tags(120.0);
   picture("ahead.jpg", ahead.replace(ahead.find("-87.0"), 5, "-5.0"));
   picture("a,b.jpg", tags(120.0));
@@ -121,9 +122,10 @@ TEST_F(FramesCommand, LeavesOutWhatDoesNotTellEnoughAndSaysWhatIsMissing) {
               AllOf(HasSubstr("good.jpg,"), Not(HasSubstr("bare")), Not(HasSubstr("ground")), Not(HasSubstr("ahead"))));
   EXPECT_THAT(result.err, AllOf(HasSubstr("bare.jpg is left out: its file does not tell its place"),
                                 HasSubstr("ground.jpg is left out: it was taken -1.0 m above ground"),
+                                HasSubstr("space.jpg is left out: its file tells a height of 1e+06 m"),
                                 HasSubstr("ahead.jpg is left out: its camera looked at the horizon or the sky"),
                                 HasSubstr("a,b.jpg is left out: no table of frames can hold the commas"),
-                                HasSubstr("a\"b.jpg is left out: no table of frames"), HasSubstr("1 of 6 pictures"),
+                                HasSubstr("a\"b.jpg is left out: no table of frames"), HasSubstr("1 of 7 pictures"),
                                 HasSubstr("--takeoff-agl")));
 }
 

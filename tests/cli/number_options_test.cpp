@@ -30,7 +30,8 @@ INSTANTIATE_TEST_SUITE_P(WithALowestAndAHighest, NumberOption,
                                            "fix m.gpkg a.png --confidence=", "fix m.gpkg a.png --scale-range=",
                                            "match m.gpkg a.png --heading-step=", "bench b.json --confidence=",
                                            "ingest a.geojson --map m.gpkg --width=", "fly m.gpkg --scale-range=",
-                                           "fly m.gpkg --wind-sigma=", "fly m.gpkg --missing="));
+                                           "fly m.gpkg --wind-sigma=", "frames a.jpg --takeoff-agl=",
+                                           "fly m.gpkg --missing="));
 
 }  // namespace
 }  // namespace roadfix

@@ -86,7 +86,7 @@ std::optional<double> time_of(const Tags& exif) {
   const chrono::year_month_day date(chrono::year(static_cast<int>(parts[0])),
                                     chrono::month(static_cast<unsigned>(parts[1])),
                                     chrono::day(static_cast<unsigned>(parts[2])));
-  if (!date.ok()) return std::nullopt;
+  if (!date.ok() || parts[3] >= 24.0 || parts[4] >= 60.0 || parts[5] > 60.0) return std::nullopt;
   const auto fraction = exif.find("EXIF_SubSecTime_Original");
   const auto after_point = fraction == exif.end() ? std::vector<double>() : numbers_in("0." + fraction->second);
   const auto days = static_cast<double>(chrono::sys_days(date).time_since_epoch().count());

@@ -135,6 +135,7 @@ TEST(DronePicture, CountsTimeToTheFractionOfASecond) {
               near_to(1675940710.25));
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:31 11:05:10"}}).time_s);
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:-9 11:05:10"}}).time_s);
+  EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 24:05:10"}}).time_s);
 }
 
 TEST(DronePicture, HasTheLensOfItsCalibrationUntilItsDistortionIsTakenOut) {

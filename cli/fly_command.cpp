@@ -69,11 +69,20 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
   write_file(options.geojson_file, json_text({{"type", "FeatureCollection"}, {"features", features}}));
 }
 
+void require_known_once(const std::vector<std::string>& filters) {
+  for (const std::string& filter : filters) {
+    fly::filter_named(filter, FlyOptions().service.filter.particles);
+    if (std::ranges::count(filters, filter) == 1) continue;
+    throw InvalidInput("bad-parameter",
+                       fmt::format("--filter names {} twice, which flies the same twice: name each once", filter));
+  }
+}
+
 fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
   fly::ServicePlan plan = options.service;
   plan.filter.vehicle = vehicle_of(options);
   if (plan.base.empty()) {
-    for (const std::string& filter : options.campaign.filters) fly::filter_named(filter, plan.filter.particles);
+    require_known_once(options.campaign.filters);
     return fly::library_localizers(map, plan.filter, stop);
   }
   if (options.campaign.filters != fly::Campaign().filters) {

@@ -161,7 +161,7 @@ TEST_F(FlyCommand, FliesACourseOfAFileToItsEnd) {
     return nlohmann::json::parse(text_of(file("course.json")))["filters"]["default"]["flights"][0]["steps"].get<int>();
   };
   // 333 m north, 308 m east and 333 m back south; the last steps and the corners are cut by the turning circle.
-  EXPECT_NEAR(steps_of(""), (333 + 308 + 333) / 5, 15);
+  EXPECT_NEAR(steps_of(""), (333.0 + 308.0 + 333.0) / 5.0, 15.0);
   EXPECT_EQ(steps_of(" --steps 20"), 20);
   EXPECT_THAT(roadfix(flight + "0").err, HasSubstr("is not flown to its end in 100000 steps"));
 }
@@ -198,6 +198,8 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
   EXPECT_EQ(large.code, 1);
   EXPECT_THAT(large.err, HasSubstr("no-place-to-fly"));
   EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter best").err, HasSubstr("filter-unknown"));
+  EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --filter paper,default,paper").err,
+              HasSubstr("names paper twice"));
   EXPECT_EQ(roadfix("fly " + map() + " --steps none").code, 2);
   EXPECT_EQ(roadfix("fly " + map() + " --erase 20").code, 2);
   EXPECT_EQ(roadfix("fly " + map() + " --course survey --lane-m 0.001").code, 2);

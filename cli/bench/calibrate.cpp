@@ -191,6 +191,15 @@ json calibration_json(const CalibrationReport& report, const json& origin) {
   return document;
 }
 
+std::optional<std::string> accuracy_note(const Calibration& learned) {
+  constexpr double kLeastOfRealGround = 0.5;
+  if (learned.position_sigma_scale >= kLeastOfRealGround) return std::nullopt;
+  return fmt::format(
+      "the right places lie {:.1f} times nearer to the truth than was stated, as where frames are simulated without "
+      "shift_m, or rendered. No map of real ground is as accurate, but every position will be said to be",
+      1.0 / learned.position_sigma_scale);
+}
+
 HeadingScale learn_heading_scale(std::span<const Outcome> outcomes, const Calibration& in_force) {
   const NormalisedErrors errors = normalised_errors(outcomes);
   const auto right = static_cast<int>(errors.heading.size());

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "cli/bench/report.hpp"
@@ -25,6 +27,9 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
 
 /// The file's content; `origin` says where it was learned.
 nlohmann::json calibration_json(const CalibrationReport& report, const nlohmann::json& origin);
+
+/// What has to be said of a calibration that would state positions far more accurate than maps are.
+std::optional<std::string> accuracy_note(const Calibration& learned);
 
 struct HeadingScale {
   double scale = 1.0;

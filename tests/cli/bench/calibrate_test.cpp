@@ -1,6 +1,6 @@
 #include "cli/bench/calibrate.hpp"
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -11,6 +11,9 @@
 
 namespace roadfix::bench {
 namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Optional;
 
 /// Answers that are right with a probability that is a logistic function of the surprise, errors of twice the ellipse.
 std::vector<Outcome> drawn(int n, std::uint64_t seed) {
@@ -95,6 +98,13 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
   }
   const CalibrationReport report = learn_calibration(exact, *shipped_calibration());
   EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
+}
+
+TEST(LearnCalibration, SaysWhereItsPlacesWouldBeStatedMoreAccurateThanMapsAre) {
+  Calibration learned = *shipped_calibration();
+  EXPECT_EQ(accuracy_note(learned), std::nullopt);
+  learned.position_sigma_scale = 0.25;
+  EXPECT_THAT(accuracy_note(learned), Optional(HasSubstr("4.0 times nearer")));
 }
 
 TEST(LearnHeadingScale, WidensHeadingsThatAreSurerThanTheyShouldBe) {

@@ -91,7 +91,7 @@ export class Tracks {
         this.keepLine(chosen.id, textOf(track));
         if (!chosen.track) this.maps.wish(track.map.name);
       }
-      Object.assign(chosen, { track, heard: asked - 1000 * track.silent_s, trouble: null });
+      Object.assign(chosen, { track, heard: asked - 1000 * (track.last_age_s ?? track.silent_s), trouble: null });
     } catch (error) {
       chosen.ended = error.status === 404 || error.status === 410;
       chosen.trouble = error.title ? error : { title: 'The service gives no answer' };

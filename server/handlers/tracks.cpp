@@ -196,7 +196,12 @@ http::Response get_track(const Service& service, const http::Request& request) {
   const StoredTrack track = service.tracks.find(id_of(request));
   json answer = status_json(service, track);
   const auto last = service.tracks.last_step(track.id);
-  if (last) answer["last"] = api::stored_json(last->answer);
+  if (last) {
+    answer["last"] = api::stored_json(last->answer);
+    if (const auto age = service.tracks.times().age_of_step(track.id, last->sequence)) {
+      answer["last_age_s"] = std::chrono::duration<double>(*age).count();
+    }
+  }
   if (const auto count = fields.optional_integer("particles", 1, kMaxParticlesShown)) {
     answer["particles"] =
         api::particles_json(service.tracks.live(track.id)->particles(static_cast<std::size_t>(*count)));

@@ -136,6 +136,22 @@ TEST_F(Tracks, TellHowLongTheyWereSilentAndWhenTheyEnd) {
   EXPECT_EQ(track_of(client)["stale"], false);
 }
 
+TEST_F(Tracks, CountTheTimeThatAStepTookToArriveToItsAge) {
+  const Request step = flight(1)[0];
+  const auto running = service();
+  httplib::Client client = client_of(*running);
+  const std::string id = begin(client);
+  EXPECT_FALSE(testing::json_of(client.Get("/v1/tracks/" + id)).contains("last_age_s"));
+  const auto slowly = [&](std::size_t offset, std::size_t length, httplib::DataSink& sink) {
+    std::this_thread::sleep_for(1s);
+    return sink.write(step.picture.data() + offset, length);
+  };
+  EXPECT_EQ(
+      client.Post("/v1/tracks/" + id + "/steps" + step.query, step.picture.size(), slowly, "image/png")->status, 200);
+  const json track = testing::json_of(client.Get("/v1/tracks/" + id));
+  EXPECT_GE(track["last_age_s"].get<double>() - track["silent_s"].get<double>(), 0.9);
+}
+
 TEST_F(Tracks, RefuseStepsOverAMapThatWasReplaced) {
   const auto running = service();
   httplib::Client client = client_of(*running);

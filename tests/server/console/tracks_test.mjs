@@ -85,6 +85,15 @@ await run({
     await tracks.look();
     assert.ok(!isOld());
   },
+  async 'a picture that came over a slow link makes an old estimate'() {
+    answer({ ...track('one', converged), last_age_s: 14 });
+    await tracks.look();
+    assert.match(details.textContent, /14 s ago/);
+    assert.ok(isOld());
+    answer(track('one', converged));
+    await tracks.look();
+    assert.ok(!isOld());
+  },
   async 'an estimate grows old also while an answer is awaited'() {
     service.answers = { '/v1/tracks/one': () => new Promise(() => {}) };
     tracks.look();

@@ -7,7 +7,7 @@ import { Places } from './places.js';
 import { queryOf } from './question.js';
 import { Route } from './route.js';
 import { attempt, element, LastQuestion, request } from './show.js';
-import { askAgain } from './tiles.js';
+import { tilesOf } from './tiles.js';
 import { Tracks } from './tracks.js';
 
 const by = (id) => document.getElementById(id);
@@ -19,6 +19,7 @@ const places = new Places(view, by('place'), by('footprint'), by('layer'));
 const route = new Route(view, by('along'));
 const MAPS_REFRESH_MS = 10_000;
 const PATIENCE_MS = 5000;
+const TILES_AT_A_TIME = 3;
 const mapQuestions = new LastQuestion();
 let shown = null;  // the map on the page, see maps.js
 let listed = [];   // the maps as the service had them last
@@ -41,9 +42,9 @@ async function drawMap() {
   const signal = mapQuestions.next(PATIENCE_MS);
   const [info, tileset] = await Promise.all([request(url, { signal }), request(`${url}/tilejson.json`, { signal })]);
   if (tiles) tiles.remove();
-  tiles = L.tileLayer(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
+  tiles = tilesOf(`${url}/tiles/{z}/{x}/{y}.png?version=${info.version}`, {
     maxNativeZoom: tileset.maxzoom, maxZoom: tileset.maxzoom + 2, attribution: element('span', tileset.attribution).innerHTML,
-  }).on('tileerror', askAgain).addTo(view);
+  }, TILES_AT_A_TIME).addTo(view);
   shown = { name: info.name, version: info.version, bbox: info.bbox, heights: heightsOf(info) };
   by('about').replaceChildren(
     element('div', `${info.area_km2.toFixed(1)} km² in cells of ${info.cell_m} m, EPSG:${info.epsg}`),

@@ -1,7 +1,9 @@
 // Whether a frame of a place would give a fix: of the place that is clicked, and of all places of the view as a layer.
 import { square } from './geometry.js';
 import { attempt, COLOURS, drawModes, LastQuestion, request, reveal, showStatus } from './show.js';
-import { askAgain } from './tiles.js';
+import { tilesOf } from './tiles.js';
+
+const TILES_AT_A_TIME = 2;
 
 export class Places {
   #questions = new LastQuestion();
@@ -55,10 +57,10 @@ export class Places {
       const query = `footprint_m=${Number(this.footprint.value)}`;
       const tileset = await request(`${mapUrl}/localizability/tilejson.json?${query}`, { signal });
       const [west, south, east, north] = tileset.bounds;
-      this.#layer = L.tileLayer(`${mapUrl}/localizability/tiles/{z}/{x}/{y}.png?${query}&version=${version}`, {
+      this.#layer = tilesOf(`${mapUrl}/localizability/tiles/{z}/{x}/{y}.png?${query}&version=${version}`, {
         minZoom: tileset.minzoom, maxNativeZoom: tileset.maxzoom, maxZoom,
         bounds: east - west === 360 ? null : [[south, west], [north, east]],  // Leaflet would leave out what lies beyond the 180th meridian
-      }).on('tileerror', askAgain).addTo(this.view);
+      }, TILES_AT_A_TIME).addTo(this.view);
       if (this.view.getZoom() < tileset.minzoom) this.view.setZoom(tileset.minzoom);
     });
   }

@@ -1,34 +1,71 @@
-// Tiles that did not come. An <img> tells no more of it than that: ground of which there is nothing to show (204) is an
-// error to it as much as a service that is away, so the service is asked which of them it is.
+// Tiles of the map and of what lies over it. A browser opens six connections to a service: with more tiles at a time,
+// what is asked of a track would wait behind pictures that come over a slow link or are searched for, until it is given up.
 
 const FIRST_PAUSE_MS = 1000;
 const LONGEST_PAUSE_MS = 10_000;
 
 const pauseBefore = (tries) => Math.min(FIRST_PAUSE_MS * 2 ** tries, LONGEST_PAUSE_MS);
 
-/// 'none' to show, 'ready' to be shown, or 'failed'.
-async function stateOf(url) {
-  try {
-    const answer = await fetch(url);
-    if (answer.status === 204) return 'none';
-    return answer.ok ? 'ready' : 'failed';
-  } catch {
-    return 'failed';
+class Turns {
+  #waiting = [];
+
+  constructor(free) {
+    this.free = free;
+  }
+
+  async take(work) {
+    if (this.free) this.free -= 1;
+    else await new Promise((go) => { this.#waiting.push(go); });
+    try {
+      return await work();
+    } finally {
+      const next = this.#waiting.shift();
+      if (next) next();
+      else this.free += 1;
+    }
   }
 }
 
-/// For the event 'tileerror' of a layer: asks again, with growing pauses, for as long as the tile is on the page. One that
-/// ran out of time goes on where it was.
-export async function askAgain({ tile }) {
-  const url = tile.src;
-  for (let tries = Number(tile.dataset.tries ?? 0); ; tries += 1) {
-    await new Promise((go) => { setTimeout(go, pauseBefore(tries)); });
-    if (!tile.isConnected) return;
-    const state = await stateOf(url);
-    if (state === 'none') return;
-    if (state === 'failed') continue;
-    tile.dataset.tries = tries + 1;  // a picture that is broken is an error again
+/// Whether the picture came. Leaflet ends the loading of a tile that it takes off the page by another picture.
+function loaded(tile, url) {
+  return new Promise((tell) => {
+    tile.addEventListener('load', () => tell(true), { once: true });
+    tile.addEventListener('error', () => tell(false), { once: true });
     tile.src = url;
-    return;
+  });
+}
+
+/// 'shown', 'empty' or 'failed'. An <img> does not tell ground of which there is nothing to show (204) from a service that
+/// is away.
+async function fetched(tile, url) {
+  if (!tile.isConnected) return 'failed';
+  if (await loaded(tile, url)) return 'shown';
+  const answer = await fetch(url).catch(() => null);
+  return answer?.status === 204 ? 'empty' : 'failed';
+}
+
+/// 'shown' or 'empty'. Asks again, with growing pauses, for as long as the tile is on the page: then 'failed'. One that ran
+/// out of time goes on where it was.
+async function bring(tile, url, turns) {
+  await null;  // so that Leaflet has put it on the page
+  for (let tries = 0; tile.isConnected; tries += 1) {
+    const came = await turns.take(() => fetched(tile, url));
+    if (came !== 'failed') return came;
+    await new Promise((go) => { setTimeout(go, pauseBefore(tries)); });
   }
+  return 'failed';
+}
+
+/// As L.tileLayer, with so many tiles on their way at a time.
+export function tilesOf(url, options, atATime) {
+  const layer = L.tileLayer(url, options);
+  const turns = new Turns(atATime);
+  layer.createTile = (coords, done) => {
+    const tile = document.createElement('img');
+    tile.alt = '';
+    // Leaflet shows no tile that has come with an error.
+    bring(tile, layer.getTileUrl(coords), turns).then((came) => { if (tile.isConnected) done(came === 'empty', tile); });
+    return tile;
+  };
+  return layer;
 }

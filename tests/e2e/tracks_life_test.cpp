@@ -146,8 +146,8 @@ TEST_F(Tracks, CountTheTimeThatAStepTookToArriveToItsAge) {
     std::this_thread::sleep_for(1s);
     return sink.write(step.picture.data() + offset, length);
   };
-  EXPECT_EQ(
-      client.Post("/v1/tracks/" + id + "/steps" + step.query, step.picture.size(), slowly, "image/png")->status, 200);
+  EXPECT_EQ(client.Post("/v1/tracks/" + id + "/steps" + step.query, step.picture.size(), slowly, "image/png")->status,
+            200);
   const json track = testing::json_of(client.Get("/v1/tracks/" + id));
   EXPECT_GE(track["last_age_s"].get<double>() - track["silent_s"].get<double>(), 0.9);
 }

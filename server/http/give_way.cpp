@@ -10,10 +10,13 @@
 namespace roadfix::http {
 namespace {
 
-constexpr int kNicer = 10;  // gets a tenth of a processor that a thread of usual priority wants, too
+constexpr int kNicer = 10;  // gets a tenth of a processor that a thread of the process's own priority wants, too
 
 /// Threads that this one starts have its priority. It cannot be raised again.
-void lower_priority() { setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNicer); }
+void lower_priority() {
+  const auto thread = static_cast<id_t>(gettid());
+  setpriority(PRIO_PROCESS, thread, getpriority(PRIO_PROCESS, thread) + kNicer);
+}
 
 std::optional<std::future<Response>> started(const std::function<Response()>& work) {
   try {

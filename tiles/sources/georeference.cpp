@@ -181,6 +181,28 @@ void require_way_back(const RasterFile& file, const std::vector<cv::Point2d>& pi
   }
 }
 
+/// On a grid over the rectangle, with its corners; `steps` each way.
+std::vector<cv::Point2d> points_over(const cv::Rect& pixels, int steps) {
+  std::vector<cv::Point2d> points;
+  for (int row = 0; row <= steps; ++row) {
+    for (int col = 0; col <= steps; ++col) {
+      points.emplace_back(pixels.x + static_cast<double>(pixels.width) * col / steps,
+                          pixels.y + static_cast<double>(pixels.height) * row / steps);
+    }
+  }
+  return points;
+}
+
+/// Around those that have a place; kEmptyBox where none has.
+GridBox box_of_known(const std::vector<cv::Point2d>& points) {
+  GridBox box = kEmptyBox;
+  for (const cv::Point2d& p : points) {
+    const GridPoint at{p.x, p.y};
+    if (!std::isnan(p.x)) box = united(box, {at, at});
+  }
+  return box;
+}
+
 }  // namespace
 
 void DestroyTransformer::operator()(void* transformer) const { GDALDestroyGenImgProjTransformer(transformer); }
@@ -192,27 +214,28 @@ void Georeference::to_pixels(std::vector<cv::Point2d>& points) const { transform
 void Georeference::to_plane(std::vector<cv::Point2d>& points) const { transform(transformer_.get(), points, false); }
 
 GridBox Georeference::footprint() const {
-  constexpr int kSteps = 32;
-  const cv::Size size = file_->size();
-  std::vector<cv::Point2d> points;
-  for (int row = 0; row <= kSteps; ++row) {
-    for (int col = 0; col <= kSteps; ++col) {
-      points.emplace_back(static_cast<double>(size.width) * col / kSteps,
-                          static_cast<double>(size.height) * row / kSteps);
-    }
-  }
-  const std::vector<cv::Point2d> pixels = points;
+  const std::vector<cv::Point2d> pixels = points_over({{}, file_->size()}, 32);
+  std::vector<cv::Point2d> points = pixels;
   to_plane(points);
   std::vector<cv::Point2d> back = points;
   to_pixels(back);
   require_way_back(*file_, pixels, back);
-  GridBox box = kEmptyBox;
-  for (const cv::Point2d& p : points) {
-    const GridPoint at{p.x, p.y};
-    if (!std::isnan(p.x)) box = united(box, {at, at});
-  }
+  const GridBox box = box_of_known(points);
   if (box.empty() || !box.overlaps(kLattice)) nowhere(*file_, fmt::format("UTM zone EPSG:{} of the map", zone_.epsg()));
   return box;
+}
+
+std::vector<GridBox> Georeference::boxes_of_parts() const {
+  constexpr double kMargin = 1.0 / 64.0;  // of the side: between points an edge may curve outwards
+  std::vector<GridBox> boxes;
+  for (const cv::Rect& part : file_->parts()) {
+    std::vector<cv::Point2d> points = points_over(part, 8);
+    to_plane(points);
+    const bool whole = std::ranges::none_of(points, [](const cv::Point2d& p) { return std::isnan(p.x); });
+    const GridBox box = whole ? box_of_known(points) : footprint();
+    boxes.push_back(grown(box, std::max(box.width_m(), box.height_m()) * kMargin));
+  }
+  return boxes;
 }
 
 double Georeference::gsd_m() const {

@@ -31,6 +31,8 @@ class Georeference {
   /// Bounding box of the image. Throws InvalidInput "crs-not-transformable" when it has no place in the zone,
   /// "raster-beyond-its-reference" when a part of it could be placed there, but not found again.
   GridBox footprint() const;
+  /// Boxes around the file's parts: what lies within the footprint, but in none of them, holds nothing.
+  std::vector<GridBox> boxes_of_parts() const;
   /// Size of the ground that a pixel covers at the centre: the root of its area.
   double gsd_m() const;
 

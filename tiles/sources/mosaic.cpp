@@ -114,8 +114,15 @@ double bytes_of_rows(const RasterFile& file, double rows) {
 }  // namespace
 
 struct Mosaic::Image {
+  /// Whether it may hold something there.
+  bool touches(const GridBox& box) const {
+    return footprint.overlaps(box) &&
+           std::ranges::any_of(parts, [&](const GridBox& part) { return part.overlaps(box); });
+  }
+
   Content content;
   GridBox footprint;
+  std::vector<GridBox> parts;
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
   double full_opacity = 1.0;
@@ -152,8 +159,12 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
                                : require_no_heights_beside_colours(first, content);
   }
   const Georeference georeference(file, zone_);
-  Image image{std::move(content), georeference.footprint(), georeference.gsd_m(),
-              rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt, file.full_opacity()};
+  Image image{std::move(content),
+              georeference.footprint(),
+              georeference.boxes_of_parts(),
+              georeference.gsd_m(),
+              rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt,
+              file.full_opacity()};
   extent_ = united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
   channels_ = std::max(channels_, image.content.channels);
@@ -222,7 +233,7 @@ Provenance Mosaic::told() const {
 }
 
 bool Mosaic::touches(const GridBox& box) const {
-  return std::ranges::any_of(images_, [&](const Image& image) { return image.footprint.overlaps(box); });
+  return std::ranges::any_of(images_, [&](const Image& image) { return image.touches(box); });
 }
 
 GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
@@ -231,7 +242,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   GroundImage result{cv::Mat(size, CV_8UC(channels_), cv::Scalar::all(0)), cv::Mat(size, CV_8UC1, cv::Scalar(0)),
                      gsd_m};
   for (std::size_t i = 0; i < images_.size(); ++i) {
-    if (!images_[i].footprint.overlaps(box)) continue;
+    if (!images_[i].touches(box)) continue;
     std::unique_ptr<Handle> handle = borrow(i, box, gsd_m);
     warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, box, result);
     give_back(std::move(handle));

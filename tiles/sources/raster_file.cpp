@@ -230,7 +230,18 @@ cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   return valid;
 }
 
-std::vector<cv::Rect> RasterFile::sample_windows() const { return spread_windows(size()); }
+std::vector<cv::Rect> RasterFile::parts() const {
+  const cv::Rect whole({}, size());
+  if (!filled_) return {whole};
+  std::vector<cv::Rect> parts;
+  for (const cv::Rect& part : *filled_) {
+    const cv::Rect within = part & whole;
+    if (!within.empty()) parts.push_back(within);
+  }
+  return parts;
+}
+
+std::vector<cv::Rect> RasterFile::sample_windows() const { return spread_windows(parts()); }
 
 std::vector<float> RasterFile::sample_values() {
   std::vector<float> values;
@@ -249,7 +260,9 @@ std::vector<float> RasterFile::sample_values() {
 
 float RasterFile::largest_value(float enough) {
   float largest = 0.0F;
+  const std::vector<cv::Rect> held = parts();
   for (const cv::Rect& window : windows_of_blocks(first_band())) {
+    if (std::ranges::none_of(held, [&](const cv::Rect& part) { return !(part & window).empty(); })) continue;
     const cv::Mat raw = read_stored(window);
     largest = std::max(largest, static_cast<float>(extremes(raw, read_validity(window, raw)).high));
     if (largest > enough) break;

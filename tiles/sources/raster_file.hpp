@@ -84,7 +84,9 @@ class RasterFile {
   void set_full_opacity(double value) { full_opacity_ = value; }
   /// 0 to 1 by the alpha band or the mask, which the image must have; as CV_32F.
   cv::Mat read_opacity(cv::Rect window);
-  /// Small windows spread evenly over the image, the same at every call.
+  /// Of a VRT those in which its images lie, else one, all of it. None is empty, but there may be none.
+  std::vector<cv::Rect> parts() const;
+  /// Small windows spread evenly over the parts, the same at every call.
   std::vector<cv::Rect> sample_windows() const;
   /// Values of valid pixels in these windows as the file stores them: of a palette the indices.
   std::vector<float> sample_values();

@@ -1,6 +1,5 @@
 #include "tiles/sources/raster_file.hpp"
 
-#include <gdal_utils.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -19,6 +18,7 @@ namespace roadfix {
 namespace {
 
 using testing::code_of;
+using testing::mosaic_of;
 using testing::RasterSpec;
 using testing::write_raster;
 
@@ -172,19 +172,6 @@ TEST_F(RasterFileTest, OverviewsWithoutTheMaskOfTheirImageAreNotRead) {
   const std::string without = write_raster(folder / "b.tif", spec, band_number, right_half);
   add_overview(without, GA_ReadOnly);
   EXPECT_EQ(RasterFile(without, {}).overview_for(2.0), std::nullopt);
-}
-
-/// As gdalbuildvrt makes it, in the finest of their pixels.
-std::string mosaic_of(const std::filesystem::path& path, const std::vector<std::string>& images) {
-  std::vector<const char*> names;
-  for (const std::string& image : images) names.push_back(image.c_str());
-  const GdalMessages quiet;
-  std::array<const char*, 3> finest{"-resolution", "highest", nullptr};
-  GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(const_cast<char**>(finest.data()), nullptr);
-  const DatasetPtr vrt(GDALDataset::FromHandle(
-      GDALBuildVRT(path.c_str(), static_cast<int>(names.size()), nullptr, names.data(), options, nullptr)));
-  GDALBuildVRTOptionsFree(options);
-  return path.string();
 }
 
 TEST_F(RasterFileTest, GapsBetweenTheImagesOfAVrtHoldNothing) {

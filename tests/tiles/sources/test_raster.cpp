@@ -1,6 +1,7 @@
 #include "tests/tiles/sources/test_raster.hpp"
 
 #include <cpl_string.h>
+#include <gdal_utils.h>
 #include <ogr_spatialref.h>
 
 #include <cmath>
@@ -85,6 +86,18 @@ std::string write_raster(const std::filesystem::path& path, const RasterSpec& sp
     write_band(*dataset->GetRasterBand(1)->GetMaskBand(),
                [&](int col, int row) { return mask(col, row) ? 255.0 : 0.0; });
   }
+  return path.string();
+}
+
+std::string mosaic_of(const std::filesystem::path& path, const std::vector<std::string>& images) {
+  std::vector<const char*> names;
+  for (const std::string& image : images) names.push_back(image.c_str());
+  const GdalMessages quiet;
+  std::array<const char*, 3> finest{"-resolution", "highest", nullptr};
+  GDALBuildVRTOptions* options = GDALBuildVRTOptionsNew(const_cast<char**>(finest.data()), nullptr);
+  const DatasetPtr vrt(GDALDataset::FromHandle(
+      GDALBuildVRT(path.c_str(), static_cast<int>(names.size()), nullptr, names.data(), options, nullptr)));
+  GDALBuildVRTOptionsFree(options);
   return path.string();
 }
 

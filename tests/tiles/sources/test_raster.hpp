@@ -37,4 +37,7 @@ using PixelFunction = std::function<double(int band, int col, int row)>;
 std::string write_raster(const std::filesystem::path& path, const RasterSpec& spec, const PixelFunction& value,
                          const std::function<bool(int col, int row)>& mask = {});
 
+/// Writes a VRT as gdalbuildvrt makes it, in the finest of the images' pixels.
+std::string mosaic_of(const std::filesystem::path& path, const std::vector<std::string>& images);
+
 }  // namespace roadfix::testing

@@ -1,0 +1,70 @@
+// VRTs that gather images far from each other, as those of a region's towns.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/temporary_folder.hpp"
+#include "tests/tiles/sources/road_features.hpp"
+#include "tests/tiles/sources/test_raster.hpp"
+#include "tiles/sources/mosaic.hpp"
+
+namespace roadfix {
+namespace {
+
+using testing::kZone;
+using testing::mosaic_of;
+using testing::write_raster;
+
+class MosaicGaps : public ::testing::Test {
+ protected:
+  testing::TemporaryFolder folder;
+};
+
+TEST_F(MosaicGaps, AreTouchedByNoBlockButAllThatTheImagesShowIs) {
+  // Pixels of about a metre in degrees, which lie turned by a degree or so on the map's plane.
+  const auto town = [&](const char* name, double lon, double lat) {
+    testing::RasterSpec spec{.width = 900, .height = 700, .epsg = 4326};
+    spec.transform = {lon, 1e-5, 0.0, lat, 0.0, -1e-5};
+    return write_raster(folder / name, spec, [](int, int col, int row) { return 40 + (col * 7 + row * 3) % 90; });
+  };
+  const std::vector<std::string> towns{town("a.tif", 37.0, 38.0), town("b.tif", 37.1, 38.05)};
+  const Mosaic apart(towns, {}, ValueRule::kPicture, kZone);
+  const Mosaic mosaic({mosaic_of(folder / "towns.vrt", towns)}, {}, ValueRule::kPicture, kZone);
+  constexpr double kBlockM = 256.0;
+  int touched = 0;
+  int showing = 0;
+  const GridBox all = mosaic.extent();
+  for (double north = all.min.north_m; north < all.max.north_m; north += kBlockM) {
+    for (double east = all.min.east_m; east < all.max.east_m; east += kBlockM) {
+      const GridBox block{{east, north}, {east + kBlockM, north + kBlockM}};
+      const bool shows = cv::countNonZero(apart.view(block, 4.0).observed) > 0;
+      EXPECT_TRUE(mosaic.touches(block) || !shows) << east << ' ' << north;
+      touched += mosaic.touches(block) ? 1 : 0;
+      showing += shows ? 1 : 0;
+    }
+  }
+  EXPECT_GT(showing, 20);
+  EXPECT_LE(touched, 2 * showing);
+}
+
+TEST_F(MosaicGaps, LeaveTheRangeOfValuesThatOfTheImages) {
+  // Bright in the middle, which corners of the VRT do not show.
+  const auto image = [&](const char* name, double off_m) {
+    testing::RasterSpec spec{.width = 301, .height = 301, .type = GDT_UInt16};
+    spec.transform = {400000.0 + off_m, 1.0, 0.0, 4200000.0 - off_m, 0.0, -1.0};
+    return write_raster(folder / name, spec, [](int, int col, int row) {
+      return 2300 - 2000 * std::max(std::abs(col - 150), std::abs(row - 150)) / 150;
+    });
+  };
+  const Mosaic mosaic({mosaic_of(folder / "towns.vrt", {image("a.tif", 0), image("b.tif", 130'000)})}, {},
+                      ValueRule::kPicture, kZone);
+  EXPECT_NEAR(mosaic.range().low, 300.0, 50.0);
+  EXPECT_NEAR(mosaic.range().high, 2300.0, 200.0);
+}
+
+}  // namespace
+}  // namespace roadfix

@@ -11,6 +11,12 @@ COMMAND_WRAP_S = 250.0  # the time of sending of command_int starts anew
 TIMES = {"global_position_sensor": ("<QI", 1e-6), "command_int": ("<ff", 1.0)}
 
 
+def is_whole(packet):
+    """Else nobody knows of what position it is, and with another age it would be a packet like any other."""
+    return len(packet) > HEAD + CHECKSUM and len(packet) == HEAD + packet[1] + CHECKSUM and \
+        packet.endswith(_checksum(packet[1:-CHECKSUM]))
+
+
 def told_age_s(packet_format, packet):
     layout, unit_s = TIMES[packet_format]
     return unit_s * struct.unpack_from(layout, _payload(packet, struct.calcsize(layout)))[1]
@@ -30,7 +36,11 @@ def with_age(packet_format, packet, age_s):
         times = sent - processing + age_us, age_us
     payload = (struct.pack(layout, *times) + payload[size:]).rstrip(b"\0") or b"\0"
     checked = bytes([len(payload)]) + packet[2:HEAD] + payload
-    return packet[:1] + checked + crc(checked + bytes([CRC_EXTRA])).to_bytes(CHECKSUM, "little")
+    return packet[:1] + checked + _checksum(checked)
+
+
+def _checksum(checked):
+    return crc(checked + bytes([CRC_EXTRA])).to_bytes(CHECKSUM, "little")
 
 
 def _payload(packet, least):

@@ -4,7 +4,7 @@ import socket
 import sys
 import time
 
-from packet_age import TIMES, told_age_s, with_age
+from packet_age import TIMES, is_whole, told_age_s, with_age
 
 #: These say nothing of their age: a late position would move a flying vehicle back to where it was.
 FORMATS_WITHOUT_AGE = ("gps_input", "mavproxy", "nmea")
@@ -42,6 +42,9 @@ class Sender:
 
     def send(self, captured, packet):
         """`captured`: when, by time.monotonic()."""
+        if self._format in FORMATS_WITH_AGE and not is_whole(packet):
+            print("a position is not sent: its message is damaged or cut off", file=sys.stderr)
+            return
         told_s = told_age_s(self._format, packet) if self._format in FORMATS_WITH_AGE else 0.0
         age_s = max(time.monotonic() - captured, told_s)
         why = None

@@ -13,6 +13,8 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = ROOT / "scripts" / "ground_station"
 sys.path.insert(0, str(PROGRAM))
 
+from crc import crc  # noqa: E402
+
 CONVERGED = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
 
 #: What something in between answers.
@@ -27,9 +29,15 @@ def step_of(path, body):
 
 
 def packet_of(packet_format, told_s):
-    """Where the messages that say it have how long the service took."""
-    return {"global_position_sensor": struct.pack("<10xQI30x", 0, round(1e6 * told_s)),
-            "command_int": struct.pack("<10xff30x", 0.0, told_s)}.get(packet_format, b"a position")
+    """In the messages that say it, how long the service took."""
+    if packet_format == "global_position_sensor":
+        payload = struct.pack("<QI29x", 0, round(1e6 * told_s))
+    elif packet_format == "command_int":
+        payload = struct.pack("<ff27x", 0.0, told_s)
+    else:
+        return b"a position"
+    checked = bytes([len(payload), *bytes(8)]) + payload
+    return b"\xfd" + checked + crc(checked + bytes([158])).to_bytes(2, "little")
 
 
 class FakeService:

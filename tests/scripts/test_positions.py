@@ -7,7 +7,7 @@ import unittest
 from pathlib import Path
 from unittest import mock
 
-import fake_service  # noqa: F401: the folder of the program
+from fake_service import packet_of
 from words import said
 
 from packet_age import told_age_s, with_age
@@ -17,14 +17,6 @@ from steps import Line, captured
 NOW_S = 5000.0  # since the start of the computer
 DATE_S = 1.7e9
 PACKETS = Path(__file__).resolve().parents[1] / "server/autopilot/node_mavlink_vectors.json"
-
-
-def command(told_s):
-    return struct.pack("<10xff30x", 0.0, told_s)
-
-
-def sensor(told_s):
-    return struct.pack("<10xQI30x", 0, round(1e6 * told_s))
 
 
 def crc(data):
@@ -137,9 +129,10 @@ class Senders(unittest.TestCase):
     def test_say_how_old_a_dropped_position_is_and_how_old_it_may_be(self):
         for packet_format, age_s, packet, why in (
                 ("gps_input", 0.503, b"a position", "0.503 s old, more than --max-age 0.5"),
-                ("command_int", 0.94, command(0.4),
+                ("command_int", 0.94, packet_of("command_int", 0.4),
                  "0.54 s older than the 0.4 s that it says, more than --max-age 0.5"),
-                ("command_int", 4.51, command(4.4), "4.51 s old, more than the 4.5 s that its receiver believes")):
+                ("command_int", 4.51, packet_of("command_int", 4.4),
+                 "4.51 s old, more than the 4.5 s that its receiver believes")):
             with said() as words:
                 self.sender(packet_format).send(NOW_S - age_s, packet)
             self.assertEqual(words.getvalue(), f"a position is not sent: it is {why}\n")
@@ -147,11 +140,12 @@ class Senders(unittest.TestCase):
     def test_drop_what_is_older_than_ardupilot_believes_whatever_it_says(self):
         for age_s, told_s, sent in ((3.0, 3.0, True), (4.49, 4.4, True), (4.51, 4.4, False), (4.51, 4.51, False),
                                     (0.2, 8.0, False), (1.0, 0.4, False), (1.0, float("nan"), False)):
-            self.assertEqual(self.sent("command_int", age_s, command(told_s)), sent, (age_s, told_s))
+            self.assertEqual(self.sent("command_int", age_s, packet_of("command_int", told_s)), sent, (age_s, told_s))
 
     def test_drop_what_is_older_than_px4_takes(self):
         for age_s, told_s, sent in ((0.99, 0.9, True), (1.01, 0.9, False), (0.3, 1.01, False)):
-            self.assertEqual(self.sent("global_position_sensor", age_s, sensor(told_s)), sent, (age_s, told_s))
+            self.assertEqual(self.sent("global_position_sensor", age_s, packet_of("global_position_sensor", told_s)),
+                             sent, (age_s, told_s))
 
     def test_say_how_old_a_position_is_when_it_is_sent(self):
         packets = json.loads(PACKETS.read_text())
@@ -160,6 +154,18 @@ class Senders(unittest.TestCase):
             for age_s, told_s in ((0.25, 0.25), (0.5625, 0.5625), (0.1, 0.25)):
                 self.sender(packet_format).send(NOW_S - age_s, packet)
                 self.assertEqual(told_age_s(packet_format, self.autopilot.recv(2048)), told_s)
+
+    def test_send_no_message_that_came_damaged_or_cut_off_as_one_with_another_age(self):
+        packets = json.loads(PACKETS.read_text())
+        for packet_format in ("global_position_sensor", "command_int"):
+            whole = bytes.fromhex(packets[packet_format])
+            with said() as words:
+                for damaged in (*(whole[:size] for size in range(len(whole))), whole + b"\0", whole + whole,
+                                *(whole[:at] + bytes([whole[at] ^ 4]) + whole[at + 1:] for at in range(1, len(whole)))):
+                    self.sender(packet_format).send(NOW_S - 0.25, damaged)
+                    self.assertRaises(BlockingIOError, self.autopilot.recv, 2048)
+            self.assertEqual(set(words.getvalue().splitlines()),
+                             {"a position is not sent: its message is damaged or cut off"})
 
     def expecting(self, packet_format, *steps):
         sender = self.sender(packet_format)

@@ -54,13 +54,27 @@ class Autopilots(unittest.TestCase):
         self.assertEqual(words.getvalue().splitlines(), [
             "component 154 of system 8 sends ATTITUDE too and is ignored (--component)",
             "listening to system 7, component 1",
+            "system 8, another vehicle, sends ATTITUDE too and is ignored (--system)",
             "component 155 of system 7 sends ATTITUDE too and is ignored (--component)"])
 
     def test_have_the_component_and_system_that_are_told(self):
         autopilot = Autopilot(9, 2)
-        with said():
+        with said() as words:
             self.assertEqual([autopilot.sent(Message(system, component, "ATTITUDE", {}))
                               for system, component in ((9, 1), (8, 2), (9, 2))], [False, False, True])
+        self.assertEqual(words.getvalue().count("\n"), 1, "nobody has to tell which of two vehicles is meant")
+
+    def test_of_several_vehicles_are_told_of_where_nobody_says_which_is_meant(self):
+        autopilot = Autopilot(None, 1)
+        with said() as words:
+            self.assertEqual([autopilot.sent(Message(system, 1, name, {}))
+                              for system, name in ((2, "VFR_HUD"), (1, "VFR_HUD"), (1, "ATTITUDE"), (2, "ATTITUDE"),
+                                                   (1, "ATTITUDE"), (3, "ATTITUDE"), (0, "ATTITUDE"))],
+                             [True, False, False, True, False, False, False])
+        self.assertEqual(words.getvalue().splitlines(), [
+            "listening to system 2, component 1",
+            "system 1, another vehicle, sends ATTITUDE too and is ignored (--system)",
+            "system 3, another vehicle, sends ATTITUDE too and is ignored (--system)"])
 
 
 class Answers(unittest.TestCase):

@@ -123,8 +123,8 @@ class NewPictures:
                   "them (not FAT), or copy without keeping dates", file=sys.stderr)
             return False
         if before is not None and version.written - before.written < READ_S:
-            print(f"{path} is left out: it was another picture {version.written - before.written:.1f} s before: give "
-                  "each a name of its own", file=sys.stderr)
+            print(f"{path} is left out: it was taken as it was {version.written - before.written:.1f} s before: give each "
+                  "picture a name of its own, and write it without a pause", file=sys.stderr)
             return False
         return not self._lateness.is_late(path, version.written)
 

@@ -136,9 +136,20 @@ class Pictures(unittest.TestCase):
             self.write("latest.jpg", date_s=date_s)
             names, words = self.new(new)
             self.assertEqual(names, [])
-            self.assertIn("give each a name of its own", words)
+            self.assertIn("give each picture a name of its own", words)
         self.write("latest.jpg", date_s=120.5)
         self.assertEqual(self.new(new), (["latest.jpg"], ""), "10.1 s later")
+
+    def test_that_come_with_a_pause_are_said_to(self):
+        new = NewPictures(self.folder, self.clock)
+        self.write("1.jpg", b"\xff\xd8 half", date_s=100)
+        self.time.now = 101.1
+        self.assertEqual(self.new(new), (["1.jpg"], ""), "it might have another ending, as some cameras'")
+        self.write("1.jpg", b"\xff\xd8 half and whole \xff\xd9", date_s=101.6)
+        names, words = self.new(new)
+        self.assertEqual(names, [])
+        self.assertIn("1.jpg is left out: it was taken as it was 1.6 s before: ", words)
+        self.assertIn("write it without a pause", words)
 
     def test_are_left_out_where_their_dates_are_in_whole_seconds_which_a_vehicle_flies_far_in(self):
         new = NewPictures(self.folder, self.clock)

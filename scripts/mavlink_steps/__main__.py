@@ -31,7 +31,7 @@ from lines import Lines
 from link import LinkSilence
 from log import Log
 from options import parse_arguments
-from packets import messages
+from packets import Stream
 from pictures import NewPictures, Silence
 from receiver import Receiver
 from recording import Recording, columns
@@ -52,7 +52,7 @@ def listen(link, address):
         raise OSError(f"--listen {address[0]}:{address[1]}: {why}") from None
 
 
-def hear(link, receiver):
+def hear(link, stream, receiver):
     """Takes all that has come: a look into a full folder takes as long as many messages need to come."""
     for _ in range(MOST_HEARD):
         try:
@@ -60,7 +60,7 @@ def hear(link, receiver):
         except BlockingIOError:
             return
         came = time.monotonic()
-        for message in messages(datagram):
+        for message in stream.messages(datagram):
             receiver.take(message, came)
 
 
@@ -70,6 +70,7 @@ def follow(link, pictures, table, clock, options):
     autopilot = Autopilot(options.system, options.component)
     gimbal = Gimbal(options.gimbal) if options.camera == "gimbal" else None
     receiver = Receiver(autopilot, vehicle, gimbal)
+    stream = Stream()
     recording = Recording(table, vehicle, options) if table else None
     lines = Lines(vehicle, gimbal, autopilot, clock, options, recording)
     silence = Silence(options.watch)
@@ -78,7 +79,7 @@ def follow(link, pictures, table, clock, options):
     while True:
         if select.select([link], [], [], LOOK_S)[0]:
             came = time.monotonic()
-            hear(link, receiver)
+            hear(link, stream, receiver)
         if time.monotonic() < looked + LOOK_S:
             continue
         clock.look()

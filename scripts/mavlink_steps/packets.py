@@ -5,6 +5,8 @@ from typing import NamedTuple
 
 from crc import crc
 
+STARTS = START_1, START_2 = 0xFE, 0xFD  # of both versions
+
 #: id: name, CRC_EXTRA, wire order of the fields that are used
 MESSAGES = {
     24: ("GPS_RAW_INT", 24, "<Q3i4HB", ("time_usec", "lat", "lon", "alt", "eph", "epv", "vel", "cog", "fix_type")),
@@ -38,10 +40,10 @@ class Message(NamedTuple):
 
 def _packet_at(data, at):
     """System, component, id, payload, the bytes that the CRC is of, the CRC, and where the packet ends; None for none."""
-    if data[at] == 0xFD and at + 12 <= len(data):
+    if data[at] == START_2 and at + 12 <= len(data):
         length, signed, message = data[at + 1], data[at + 2] & 1, int.from_bytes(data[at + 7:at + 10], "little")
         system, component, begin = data[at + 5], data[at + 6], at + 10
-    elif data[at] == 0xFE and at + 8 <= len(data):
+    elif data[at] == START_1 and at + 8 <= len(data):
         length, signed, message = data[at + 1], 0, data[at + 5]
         system, component, begin = data[at + 3], data[at + 4], at + 6
     else:
@@ -53,24 +55,34 @@ def _packet_at(data, at):
     return system, component, message, data[begin:end], data[at + 1:end], told, end + 2 + 13 * signed
 
 
-def messages(data):
-    """Those of MESSAGES in a datagram. What is damaged, or something else, is left out."""
-    at = 0
-    while at < len(data):
-        packet = _packet_at(data, at)
-        if packet is None:
-            at += 1
-            continue
-        system, component, number, payload, checked, told, end = packet
-        known = MESSAGES.get(number)
-        if known is None:
-            at = end
-            continue
-        name, extra, layout, fields = known
-        if crc(checked + bytes([extra])) != told:
-            at += 1
-            continue
-        size = struct.calcsize(layout)
-        values = struct.unpack(layout, payload[:size].ljust(size, b"\0"))  # zeros at the end are not sent
-        yield Message(system, component, name, dict(zip(fields, values)))
-        at = end
+class Stream:
+    """What comes on a port. A packet may go on in the next datagram, as of a bridge that passes on a serial line."""
+
+    def __init__(self):
+        self._begun = b""
+
+    def messages(self, datagram):
+        """Those of MESSAGES that end in it. What is damaged, or something else, is left out."""
+        data = self._begun + datagram
+        found, at, begun = [], 0, len(data)
+        while at < len(data):
+            packet = _packet_at(data, at)
+            if packet is None:
+                begun = min(begun, at) if data[at] in STARTS else begun
+                at += 1
+                continue
+            system, component, number, payload, checked, told, end = packet
+            known = MESSAGES.get(number)
+            if known is None:
+                at = end
+                continue
+            name, extra, layout, fields = known
+            if crc(checked + bytes([extra])) != told:
+                at += 1
+                continue
+            size = struct.calcsize(layout)
+            values = struct.unpack(layout, payload[:size].ljust(size, b"\0"))  # zeros at the end are not sent
+            found.append(Message(system, component, name, dict(zip(fields, values))))
+            at, begun = end, len(data)
+        self._begun = data[begun:]
+        return found

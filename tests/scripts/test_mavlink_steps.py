@@ -22,7 +22,7 @@ sys.path.insert(0, str(PROGRAM))
 
 from autopilot import Autopilot  # noqa: E402
 from crc import crc  # noqa: E402
-from packets import MESSAGES, Message  # noqa: E402
+from packets import MESSAGES, Message, Stream  # noqa: E402
 from receiver import Receiver  # noqa: E402
 
 
@@ -106,7 +106,7 @@ class Listening(unittest.TestCase):
         for boot_ms in range(50):
             self.theirs.send(packet("ATTITUDE", boot_ms, 0.0, 0.0, 0.0))
         with said():
-            self.program.hear(self.ours, Receiver(Autopilot(7, 1), vehicle, None))
+            self.program.hear(self.ours, Stream(), Receiver(Autopilot(7, 1), vehicle, None))
         self.assertEqual(heard, list(range(50)))
 
     def test_hears_gimbals_of_whatever_component_of_the_vehicle_alone(self):
@@ -117,7 +117,7 @@ class Listening(unittest.TestCase):
                      gimbal_status(4, system=8), gimbal_status(5, component=1)):
             self.theirs.send(data)
         with said():
-            self.program.hear(self.ours, Receiver(Autopilot(None, 1), vehicle, gimbal))
+            self.program.hear(self.ours, Stream(), Receiver(Autopilot(None, 1), vehicle, gimbal))
         self.assertEqual(heard, [3, 5], "before the autopilot was heard nobody knows whose it is")
 
     def test_looks_at_the_clock_before_the_pictures_and_then_whether_they_come(self):

@@ -8,7 +8,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts" / "mavlink_steps"))
 
 from crc import crc  # noqa: E402
-from packets import messages  # noqa: E402
+from packets import Stream  # noqa: E402
 
 # system 7, component 1
 ATTITUDE = bytes.fromhex(
@@ -48,6 +48,10 @@ OTHERS = {
 }
 
 
+def messages(data):
+    return Stream().messages(data)
+
+
 class Packets(unittest.TestCase):
     def test_of_both_versions_are_read_as_another_implementation_writes_them(self):
         for data in (ATTITUDE, ATTITUDE_OF_VERSION_1):
@@ -78,7 +82,23 @@ class Packets(unittest.TestCase):
                 data[draw.randrange(len(data))] ^= 1 << draw.randrange(8)
             del data[draw.randrange(len(data)):]
             for message in messages(bytes(data)):
-                self.assertIn(message, list(messages(ATTITUDE + LOCAL_POSITION)))
+                self.assertIn(message, messages(ATTITUDE + LOCAL_POSITION))
+
+    def test_go_on_in_the_next_datagram_as_bridges_of_serial_lines_pass_them_on(self):
+        others = b"".join(data for data, _ in OTHERS.values())
+        unknown = b"\xfd\x04\x00\x00\x00\x07\x01\x00\x00\x00" + bytes(6)
+        line = 3 * (ATTITUDE + unknown + ATTITUDE_OF_VERSION_1 + others + LOCAL_POSITION)
+        for size in (1, 2, 7, 16, 64, 300):
+            stream = Stream()
+            found = [message for at in range(0, len(line), size) for message in stream.messages(line[at:at + size])]
+            self.assertEqual([str(message) for message in found], [str(message) for message in messages(line)], size)
+
+    def test_that_were_cut_off_cost_no_more_than_the_next_one(self):
+        stream = Stream()
+        for cut in range(1, len(ATTITUDE)):
+            self.assertEqual(stream.messages(ATTITUDE[:cut]), [])
+            stream.messages(LOCAL_POSITION)
+            self.assertEqual(stream.messages(LOCAL_POSITION), messages(LOCAL_POSITION), cut)
 
 
 if __name__ == "__main__":

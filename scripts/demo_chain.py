@@ -241,7 +241,11 @@ Open in a browser or a GIS, until Ctrl-C:
   {host}/v1/maps/demo/tiles/{{z}}/{{x}}/{{y}}.png   the tiles for QGIS (XYZ connection)
   {host}/openapi.json                         every route
   {made}   the map itself, for QGIS""", flush=True)
-        process.wait()
+        try:
+            process.wait()
+        except KeyboardInterrupt:
+            print("\nstopped")
+            return
         raise DemoError(f"the service ended by itself with exit code {process.returncode}:\n{tail(work / 'serve.log')}")
 
 
@@ -249,12 +253,15 @@ def main():
     arguments = parse_arguments()
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
     signal.signal(signal.SIGHUP, lambda *_: sys.exit(128 + signal.SIGHUP))
-    work = arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="roadfix-demo-"))
-    work.mkdir(parents=True, exist_ok=True)
+    try:
+        work = arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="roadfix-demo-"))
+        work.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        sys.exit(f"demo: no folder for its files: {problem}")
     try:
         demo(arguments, work.resolve())
     except KeyboardInterrupt:
-        print("\nstopped")
+        sys.exit("\ndemo: stopped before its answers")
     except DemoError as error:
         sys.exit(f"demo: {error}")
     finally:

@@ -2,6 +2,7 @@
 """The demo, as far as it can be tried without a map."""
 import os
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -32,6 +33,26 @@ class Demo(unittest.TestCase):
                                    "--keep", folder], capture_output=True, text=True, timeout=60)
             self.assertEqual((demo.returncode, made.read_text()), (1, "a map"))
             self.assertIn("demo.gpkg is the map of an earlier demo: remove it", demo.stderr)
+
+    def test_says_in_a_line_that_its_folder_cannot_be_made(self):
+        with tempfile.NamedTemporaryFile() as file:
+            demo = subprocess.run([sys.executable, "-B", str(ROOT / "scripts/demo_chain.py"), "--roadfix", "/nowhere",
+                                   "--keep", f"{file.name}/kept"], capture_output=True, text=True, timeout=60)
+            self.assertEqual(demo.returncode, 1)
+            self.assertRegex(demo.stderr, r"\Ademo: no folder for its files: .*\n\Z")
+
+    def test_has_not_succeeded_where_it_is_stopped_before_its_answers(self):
+        with tempfile.TemporaryDirectory() as folder:
+            endless = Path(folder, "roadfix")
+            endless.write_text("#!/bin/sh\nexec sleep 60\n")
+            endless.chmod(0o755)
+            demo = subprocess.Popen([sys.executable, "-B", str(ROOT / "scripts/demo_chain.py"), "--roadfix", str(endless),
+                                     "--once", "--keep", folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                                    start_new_session=True)
+            self.assertIn("roadfix world", demo.stdout.readline())
+            os.killpg(demo.pid, signal.SIGINT)  # as a terminal does
+            _, told = demo.communicate(timeout=60)
+            self.assertEqual((demo.returncode, told), (1, "\ndemo: stopped before its answers\n"))
 
 
 if __name__ == "__main__":

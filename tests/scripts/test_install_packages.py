@@ -21,6 +21,12 @@ case " $* " in
 esac
 case " $* " in *" install "*) echo "Unpacking cmake" ;; esac
 """
+LOCKED = """#!/bin/sh
+case " $* " in
+  *" DPkg::Lock::Timeout="[1-9]* | *" update "*) ;;
+  *) echo "E: Could not get lock /var/lib/dpkg/lock-frontend" >&2; exit 100 ;;
+esac
+"""
 NOTHING = "#!/bin/sh\n"
 DEBIAN_ON_ARM = """#!/bin/sh
 cat <<'EOF'
@@ -76,6 +82,10 @@ class Installation(unittest.TestCase):
         done = self.run_program("-n", "check", capture_output=True, text=True)
         self.assertEqual(done.stdout.split(), ["clang", "clang-tidy", "clang-format", "libclang-rt-14-dev",
                                                "python3-opencv", "python3-torch"])
+
+    def test_waits_for_the_upgrades_of_a_machine_that_was_just_started(self):
+        self.write_program("apt-get", LOCKED)
+        self.run_program(capture_output=True)
 
 
 if __name__ == "__main__":

@@ -131,7 +131,7 @@ void learn(const BenchArguments& arguments, const nlohmann::json& origin, const 
   write_json(bench::calibration_json(report, origin), arguments.calibrate_file);
   fmt::print(out, "learned from {} answers, {} of them right: {}\n", report.examples, report.right,
              arguments.calibrate_file);
-  if (const auto note = bench::accuracy_note(report.calibration)) fmt::print(stderr, "note: {}\n", *note);
+  for (const std::string& note : bench::notes_on(report)) fmt::print(stderr, "note: {}\n", note);
 }
 
 void learn_headings(const BenchArguments& arguments, const nlohmann::json& origin,

@@ -19,7 +19,7 @@ using evaluation::quantile;
 using nlohmann::json;
 
 constexpr std::size_t kFigures = kCountedFigures.size();
-constexpr int kFewest = 50;
+constexpr std::size_t kFewest = 50;
 // What parse_calibration() takes. Errors far below what the peak tells are those of simulated frames without a shift.
 constexpr double kSmallestScale = 0.1;
 constexpr double kLargestScale = 100.0;
@@ -31,7 +31,7 @@ struct Example {
 
 /// So that the right answers have the mean of chi^2, and 95 % of them lie where 95 % should.
 double scale_of(const std::vector<double>& normalised, double mean, double within_95) {
-  if (normalised.empty()) return 1.0;
+  if (normalised.size() < kFewest) return 1.0;
   double sum = 0.0;
   for (const double value : normalised) sum += value / static_cast<double>(normalised.size());
   return std::sqrt(std::max(sum / mean, quantile(normalised, 0.95).value_or(0.0) / within_95));
@@ -43,14 +43,34 @@ struct NormalisedErrors {
   std::vector<double> heading;
 };
 
+/// Of a frame that says itself how uncertain it is, the answer errs by its camera more than by the match and the map:
+/// it would scale these by how cautious the frame is.
+bool tells_most(double told, double stated) { return told > 0.5 * stated; }
+
 NormalisedErrors normalised_errors(std::span<const Outcome> outcomes) {
   NormalisedErrors errors;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.position_nees || !outcome.error_m || *outcome.error_m > kFalseFixM) continue;
-    errors.position.push_back(*outcome.position_nees);
-    errors.heading.push_back(*outcome.heading_nees);
+    const Answer& answer = outcome.answer;
+    if (!tells_most(answer.nadir_sigma_m, answer.mode->ellipse.sigma_m[1])) {
+      errors.position.push_back(*outcome.position_nees);
+    }
+    if (!tells_most(answer.nadir_heading_sigma.radians(), answer.mode->heading_sigma.radians())) {
+      errors.heading.push_back(*outcome.heading_nees);
+    }
   }
   return errors;
+}
+
+/// How much larger the ellipse of an answer becomes where the part of it that calibrations scale grows by `factor`; of
+/// its axes the lesser.
+double growth(const Answer& answer, double factor) {
+  const auto of_axis = [&](double sigma_m) {
+    const double told = sigma_m > 0.0 ? std::min(answer.nadir_sigma_m / sigma_m, 1.0) : 0.0;
+    return std::sqrt(factor * factor * (1.0 - told * told) + told * told);
+  };
+  const auto& sigma_m = answer.mode->ellipse.sigma_m;
+  return std::min(of_axis(sigma_m[0]), of_axis(sigma_m[1]));
 }
 
 double bounded(double scale) { return std::clamp(scale, kSmallestScale, kLargestScale); }
@@ -143,7 +163,7 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
   CalibrationReport report;
   const NormalisedErrors errors = normalised_errors(outcomes);
   const double sigma_scale = position_scale(errors, in_force);
-  const double region = kRegionSigmas * sigma_scale / in_force.position_sigma_scale;
+  const double factor = sigma_scale / in_force.position_sigma_scale;
   std::vector<Example> examples;
   for (const Outcome& outcome : outcomes) {
     if (!outcome.answer.figures || !outcome.position_nees) continue;
@@ -151,12 +171,15 @@ CalibrationReport learn_calibration(std::span<const Outcome> outcomes, const Cal
     for (std::size_t i = 0; i < kFigures; ++i) {
       example.figures[i] = (*outcome.answer.figures).*kCountedFigures[i].value;
     }
-    example.right = *outcome.position_nees <= region * region;
+    example.right = *outcome.position_nees <= std::pow(kRegionSigmas * growth(outcome.answer, factor), 2);
     report.right += example.right ? 1 : 0;
     report.elsewhere += outcome.truth ? 0 : 1;
   }
   report.examples = static_cast<int>(examples.size());
-  if (report.right < kFewest || report.examples - report.right < kFewest) {
+  if (errors.position.size() < kFewest) report.kept.emplace_back("positions");
+  if (errors.heading.size() < kFewest) report.kept.emplace_back("headings");
+  const auto right = static_cast<std::size_t>(report.right);
+  if (right < kFewest || examples.size() - right < kFewest) {
     throw InvalidInput("calibration-too-few-examples",
                        fmt::format("{} right and {} wrong answers are too few to learn from: ask at least {} of each",
                                    report.right, report.examples - report.right, kFewest));
@@ -191,23 +214,48 @@ json calibration_json(const CalibrationReport& report, const json& origin) {
   return document;
 }
 
-std::optional<std::string> accuracy_note(const Calibration& learned) {
+std::vector<std::string> notes_on(const CalibrationReport& report) {
   constexpr double kLeastOfRealGround = 0.5;
-  if (learned.position_sigma_scale >= kLeastOfRealGround) return std::nullopt;
-  return fmt::format(
-      "the right places lie {:.1f} times nearer to the truth than was stated, as where frames are simulated without "
-      "shift_m, or rendered. No map of real ground is as accurate, but every position will be said to be",
-      1.0 / learned.position_sigma_scale);
+  const Calibration& learned = report.calibration;
+  std::vector<std::string> notes;
+  if (const double confidence = FixOptions{}.confidence; learned.highest < confidence) {
+    notes.push_back(fmt::format(
+        "these answers vouch for no probability above {:.4f}, and a fix takes {} unless told otherwise: with this "
+        "calibration there is none. Ask more queries; 98 right answers that are surer than any wrong one are the least",
+        learned.highest, confidence));
+  }
+  if (learned.position_sigma_scale < kLeastOfRealGround) {
+    notes.push_back(fmt::format(
+        "the right places lie {:.1f} times nearer to the truth than was stated, as where frames are simulated without "
+        "shift_m, or rendered. No map of real ground is as accurate, but every position will be said to be",
+        1.0 / learned.position_sigma_scale));
+  }
+  if (learned.heading_sigma_scale < kLeastOfRealGround) {
+    notes.push_back(fmt::format(
+        "the headings of right places lie {:.1f} times nearer to the truth than was stated, as where frames are "
+        "simulated. Those of real frames do not, but every heading will be said to: learn that from imagery, with "
+        "--calibrate-headings",
+        1.0 / learned.heading_sigma_scale));
+  }
+  if (!report.kept.empty()) {
+    notes.push_back(fmt::format(
+        "the accuracy of {} stays as it was, since fewer than {} right answers tell of match and map: of the others "
+        "most of the stated deviation is what their frames tell of camera, attitude or offsets",
+        fmt::join(report.kept, " and "), kFewest));
+  }
+  return notes;
 }
 
 HeadingScale learn_heading_scale(std::span<const Outcome> outcomes, const Calibration& in_force) {
   const NormalisedErrors errors = normalised_errors(outcomes);
-  const auto right = static_cast<int>(errors.heading.size());
+  const std::size_t right = errors.heading.size();
   if (right < kFewest) {
     throw InvalidInput("calibration-too-few-examples",
-                       fmt::format("{} right answers are too few to learn from: ask for {} at least", right, kFewest));
+                       fmt::format("{} right answers whose frames do not tell most of the accuracy of their headings "
+                                   "themselves are too few to learn from: ask for {} at least",
+                                   right, kFewest));
   }
-  return {heading_scale(errors, in_force), right};
+  return {heading_scale(errors, in_force), static_cast<int>(right)};
 }
 
 json with_heading_scale(std::string_view calibration, const HeadingScale& learned, const json& origin) {

@@ -61,6 +61,9 @@ struct Answer {
   std::optional<FixMode> mode;  ///< the same with its ellipse, from methods that give one
   std::optional<SearchFigures> figures;
   double probability = 0.0;
+  // What the frame tells that it may be off by itself: a part of what the mode states that no calibration scales.
+  double nadir_sigma_m = 0.0;
+  Angle nadir_heading_sigma{};
   std::vector<std::size_t> left_out;  ///< FramesTogether::left_out
   double time_ms = 0.0;               ///< 0 where no place was looked for: not counted
   // Of the true place, where it is known; the time does not count.

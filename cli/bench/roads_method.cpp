@@ -100,6 +100,8 @@ class RoadsMethod : public Method {
     if (!fix.modes.empty()) {
       answer.mode = fix.modes.front();
       answer.best = answer.mode->pose;
+      answer.nadir_sigma_m = answer.mode->scale * seen->features.nadir_sigma_m;
+      answer.nadir_heading_sigma = seen->features.nadir_heading_sigma;
     }
     answer.left_out = seen->left_out;
     answer.time_ms = parts.detection_ms + ms_since(start);

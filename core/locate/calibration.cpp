@@ -46,6 +46,7 @@ Calibration parse_calibration(std::string_view text) {
   const JsonField scale = root.at("sigma_scale");
   calibration.position_sigma_scale = scale.at("position").number(0.1, 100.0);
   calibration.heading_sigma_scale = scale.at("heading").number(0.1, 100.0);
+  if (root.has("origin") && !root.at("origin").is_object()) root.at("origin").refuse("must be an object");
   return calibration;
 }
 

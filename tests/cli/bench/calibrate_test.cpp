@@ -12,8 +12,10 @@
 namespace roadfix::bench {
 namespace {
 
+using ::testing::Contains;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Optional;
+using ::testing::IsEmpty;
 
 /// Answers that are right with a probability that is a logistic function of the surprise, errors of twice the ellipse.
 std::vector<Outcome> drawn(int n, std::uint64_t seed) {
@@ -101,11 +103,50 @@ TEST(LearnCalibration, WritesWhatTheServiceReadsHoweverSmallTheErrors) {
   EXPECT_EQ(parse_calibration(calibration_json(report, nlohmann::json::object()).dump()).position_sigma_scale, 0.1);
 }
 
-TEST(LearnCalibration, SaysWhereItsPlacesWouldBeStatedMoreAccurateThanMapsAre) {
-  Calibration learned = *shipped_calibration();
-  EXPECT_EQ(accuracy_note(learned), std::nullopt);
-  learned.position_sigma_scale = 0.25;
-  EXPECT_THAT(accuracy_note(learned), Optional(HasSubstr("4.0 times nearer")));
+TEST(LearnCalibration, LearnsNothingOfMapsFromFramesThatAreMoreUncertainThemselves) {
+  const Calibration& before = *shipped_calibration();
+  std::vector<Outcome> cautious = drawn(1000, 11);
+  for (Outcome& outcome : cautious) {
+    outcome.answer.mode->ellipse.sigma_m = {7.0, 6.0};
+    outcome.answer.nadir_sigma_m = 5.0;
+    outcome.answer.nadir_heading_sigma = Angle::degrees(0.9);
+    if (*outcome.error_m < 25.0) outcome.position_nees = 0.01 * *outcome.position_nees;
+  }
+  const CalibrationReport report = learn_calibration(cautious, before);
+  EXPECT_EQ(report.calibration.position_sigma_scale, before.position_sigma_scale);
+  EXPECT_EQ(report.calibration.heading_sigma_scale, before.heading_sigma_scale);
+  EXPECT_THAT(notes_on(report), Contains(HasSubstr("the accuracy of positions and headings stays as it was")));
+  EXPECT_THROW(learn_heading_scale(cautious, before), InvalidInput);
+}
+
+TEST(LearnCalibration, CountsAsRightWhatLiesInTheEllipseThatWillBeStated) {
+  std::vector<Outcome> outcomes = drawn(2000, 12);  // wants ellipses twice as large
+  std::vector<Outcome> of_cameras = drawn(400, 13);
+  for (Outcome& outcome : of_cameras) {
+    outcome.answer.mode->ellipse.sigma_m = {20.0, 20.0};
+    outcome.answer.nadir_sigma_m = 19.0;
+    outcome.error_m = 100.0;
+    outcome.position_nees = 30.0;  // beyond four deviations, of which cameras tell nearly all
+  }
+  const int right = learn_calibration(outcomes, *shipped_calibration()).right;
+  outcomes.insert(outcomes.end(), of_cameras.begin(), of_cameras.end());
+  EXPECT_EQ(learn_calibration(outcomes, *shipped_calibration()).right, right);
+}
+
+TEST(LearnCalibration, SaysWhereItsPlacesWouldBeStatedMoreAccurateThanTheyAre) {
+  CalibrationReport report;
+  report.calibration = *shipped_calibration();
+  EXPECT_THAT(notes_on(report), IsEmpty());
+  report.calibration.position_sigma_scale = 0.25;
+  report.calibration.heading_sigma_scale = 0.125;
+  EXPECT_THAT(notes_on(report), ElementsAre(HasSubstr("4.0 times nearer"), HasSubstr("8.0 times nearer")));
+}
+
+TEST(LearnCalibration, SaysWhereItsExamplesVouchForNoFix) {
+  CalibrationReport report = learn_calibration(drawn(110, 14), *shipped_calibration());
+  ASSERT_LT(report.calibration.highest, 0.99);
+  report.calibration.heading_sigma_scale = 1.0;
+  EXPECT_THAT(notes_on(report), ElementsAre(HasSubstr("with this calibration there is none")));
 }
 
 TEST(LearnHeadingScale, WidensHeadingsThatAreSurerThanTheyShouldBe) {

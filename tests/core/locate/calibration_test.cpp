@@ -98,6 +98,7 @@ TEST(Calibration, SaysWhichFieldOfAFileIsWrong) {
   complain("0.995", "1.0", "highest");
   complain("\"position\": 1.1, ", "", "position");
   complain("-3.0", "-3e999", "number overflow");
+  complain("{\"maps\": [\"town\"]}", "\"town\"", "origin must be an object");
   complain("\"bias\": -3.0", "\"bias\": 2.0, \"bias\": -3.0", "'bias' is given twice");
   complain("\"most\": 8.0", "\"most\": 8.0, \"most\": 9.0", "'most' is given twice");
   complain("{\"format\"", "[\"format\"", "calibration file: byte 10 is no JSON");

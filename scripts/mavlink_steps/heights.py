@@ -50,8 +50,9 @@ class Heights:
         self._above_origin.tell(height_m, came)
 
     def tell_takeoff(self, height_m):
-        """Of the take-off above that zero, until another is told. NaN: it is not known, so that it stays as it was."""
-        if math.isfinite(height_m):
+        """Of the take-off above that zero, until another is told. It stays as it was where it is not known (NaN), or
+        where nobody takes off."""
+        if abs(height_m) <= MSL_M[1]:
             self._takeoff_m = height_m
 
     def tell_above_takeoff(self, height_m, came):

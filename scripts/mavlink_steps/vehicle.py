@@ -10,6 +10,7 @@ from history import KEPT, Unknown, around, between
 
 LONGEST_HOLE_S = 2.0   # beyond it the movement between two velocities is a guess
 CARRIED_ON_S = 1.0     # by the last velocity
+FASTEST_M_S = 1000.0   # what the service takes; with one such velocity the sum would never be right again
 STATUS = ("ESTIMATOR_STATUS", "EKF_STATUS_REPORT")  # of the estimator of PX4, and of ArduPilot
 VELOCITY_HORIZ = 2     # of their flags
 ATTITUDE_HOLE_S = 0.6  # beyond it a vehicle may have banked and come back between two attitudes
@@ -149,7 +150,7 @@ class Vehicle:
             self._move((speed * math.cos(yaw), speed * math.sin(yaw)), came)
 
     def _move(self, velocity, when):
-        if not _finite(*velocity) or (self._places and when <= self._places[-1][0]):
+        if not math.hypot(*velocity) <= FASTEST_M_S or (self._places and when <= self._places[-1][0]):  # nor is NaN
             return
         last, north, east, *before = self._places[-1] if self._places else (when, 0.0, 0.0, 0.0, 0.0)
         if when - last > LONGEST_HOLE_S:

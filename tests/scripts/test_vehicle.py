@@ -284,6 +284,19 @@ class Flights(unittest.TestCase):
                         self.assertAlmostEqual(east, 0.0)
                         self.assertEqual(tuple(round(angle, 9) for angle in attitude), (0.2, 0.0, 0.3))
 
+    def test_do_not_take_for_ever_what_was_absurd_once(self):
+        for absurd in (1e30, -3e38, 1001.0):
+            vehicle = Vehicle()
+            vehicle.hear("HOME_POSITION", {"z": -20.0}, 10.0)
+            vehicle.hear("HOME_POSITION", {"z": 100.0 * absurd}, 10.0)
+            for tenth in range(100, 121):
+                move(vehicle, 0.1 * tenth, *((absurd, absurd) if tenth == 105 else (10.0, 5.0)))
+                turn(vehicle, 0.1 * tenth)
+            (north, east), _ = vehicle.seen_at(12.0)
+            self.assertAlmostEqual(north, 20.0)
+            self.assertAlmostEqual(east, 10.0)
+            self.assertAlmostEqual(vehicle.agl_m(12.0), 60.0)
+
     def test_do_not_go_on_at_a_velocity_that_the_autopilot_lost(self):
         vehicle = Vehicle()
         for tenth in range(100, 200):

@@ -142,6 +142,14 @@ void learn_headings(const BenchArguments& arguments, const nlohmann::json& origi
   fmt::print(out, "learned from the headings of {} right answers: {}\n", learned.right, file);
 }
 
+/// Before hours are spent on answers that teach nothing.
+void require_answers_to_learn_from(const BenchArguments& arguments, const bench::Manifest& manifest) {
+  if (arguments.calibrate_file.empty() && arguments.calibrate_headings_file.empty()) return;
+  if (std::ranges::find(manifest.methods, bench::MethodName::kRoads) != manifest.methods.end()) return;
+  throw InvalidInput("calibration-too-few-examples",
+                     "a calibration is learned from answers of 'roads', which is none of the methods: name it, too");
+}
+
 /// Of imagery.
 std::unique_ptr<RoadDetector> detector_of_maps(const BenchArguments& arguments) {
   DetectorChoice choice = arguments.detector;
@@ -151,6 +159,7 @@ std::unique_ptr<RoadDetector> detector_of_maps(const BenchArguments& arguments) 
 
 void run_bench(BenchArguments& arguments) {
   const bench::Manifest manifest = manifest_of(arguments);
+  require_answers_to_learn_from(arguments, manifest);
   const std::initializer_list<std::filesystem::path> outputs = {arguments.json_file, arguments.calibrate_file,
                                                                 arguments.calibrate_headings_file};
   require_apart(outputs, {arguments.manifest});

@@ -1,6 +1,7 @@
 // roadfix bench as a script meets it, over an invented town.
 #include <gmock/gmock.h>
 
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -66,6 +67,20 @@ TEST(BenchCommand, ReadsMapsInMoreOrientationsThanFramesWhereItIsTold) {
   };
   EXPECT_THAT(readers(" --map-orientations 4"), MatchesRegex("neural .*=4 and neural .*=1"));
   EXPECT_THAT(readers(" --orientations 4"), MatchesRegex("neural .*=4 and neural .*=4"));
+}
+
+TEST(BenchCommand, AsksNothingWhereNoAnswerWouldTeachTheCalibrationAnything) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 1, "footprint_m": [300, 300]}], "methods": ["sift"]})";
+  for (const char* option : {" --calibrate ", " --calibrate-headings "}) {
+    const ProgramResult bench = run_program(folder.path(), "bench " + (folder / "town.json").string() + option +
+                                                               "mine.json --map-cache " + (folder / "cache").string());
+    EXPECT_EQ(bench.code, 1);
+    EXPECT_THAT(bench.err, HasSubstr("[calibration-too-few-examples]"));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "cache"));
 }
 
 TEST(BenchCommand, RunsNoMethodWhereAnEmptyTextNamesThem) {

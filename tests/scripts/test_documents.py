@@ -1,7 +1,8 @@
 #!/usr/bin/python3
-"""Links of the documents lead to files that are there, and to headings that they have."""
+"""Links of the documents lead to files and headings that are there, and what they say of calibrations holds."""
 import collections
 import functools
+import json
 import re
 import unittest
 from pathlib import Path
@@ -43,6 +44,24 @@ class Links(unittest.TestCase):
                         self.assertIn(anchor, anchors(file))
                 links += 1
         self.assertGreater(links, 80)
+
+
+def maps_of(manifest):
+    """What each map of a bench manifest is made from, by its name."""
+    maps = json.loads((ROOT / "docs" / "calibration" / manifest).read_text(encoding="utf-8"))["maps"]
+    return {each["name"]: json.dumps(each["sources"], sort_keys=True) for each in maps}
+
+
+class Calibration(unittest.TestCase):
+    def test_is_checked_on_none_of_the_maps_that_it_was_learned_from(self):
+        origin = json.loads((ROOT / "schema" / "calibration.json").read_text(encoding="utf-8"))["origin"]
+        learned = maps_of(origin["manifest"])
+        self.assertEqual(sorted(learned), sorted(origin["maps"]))
+        for manifest in ("check.bench.json", "cities.bench.json", "degrade.bench.json", "rendered.bench.json"):
+            self.assertEqual(set(maps_of(manifest).values()) & set(learned.values()), set(), manifest)
+        headings = maps_of(origin["heading"]["manifest"])
+        for manifest in ("check.bench.json", "rendered.bench.json"):
+            self.assertEqual(set(maps_of(manifest).values()) & set(headings.values()), set(), manifest)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 // A track as the service has it now: a line of the places it was sure of, its last estimate with its ellipse, and how old
 // that is. It is asked for again and again and not read from the stream of events, in which a connection that hangs looks
 // like a vehicle that is silent, and steps that waited on a slow one look like news.
+import { Line } from './line.js';
 import { drawModes, element, headingText, inView, moveTo, request, showOld, showProblem, showStatus, table } from './show.js';
 
 const LIST_MS = 5000;
@@ -73,7 +74,7 @@ export class Tracks {
       part.replaceChildren();
       part.classList.remove('old');
     }
-    this.chosen = id ? { id, lines: [[]], after: -1 } : null;
+    this.chosen = id ? { id, line: new Line(this.view, this.path) } : null;
     return this.look();
   }
 
@@ -103,25 +104,39 @@ export class Tracks {
   }
 
   /// Why the last step of a track is no longer how it is; empty while it is.
-  whyOld({ trouble, ended, heard }) {
+  whyOld({ track, trouble, ended, heard }) {
     if (ended) return 'the track has ended';
     if (trouble) return trouble.title;
-    return Date.now() - heard < 1000 * FRESH_S ? '' : `no step for ${FRESH_S} s`;
+    if (track.last_age_s === undefined) return 'the service was started anew, and no step has come since';
+    return Date.now() - heard < 1000 * FRESH_S ? '' : `the last step is older than ${FRESH_S} s`;
   }
 
   show(chosen) {
+    if (!chosen.track && !chosen.trouble) return;
     const step = chosen.track?.last;
-    if (!step) {
-      if (chosen.trouble) showProblem(this.output, chosen.trouble);
-      else if (chosen.track) showStatus(this.output, 'waiting', ['no step has come yet', whyElsewhere(chosen.track, this.maps.shown())]);
-      return;
-    }
+    const elsewhere = chosen.track ? whyElsewhere(chosen.track, this.maps.shown()) : '';
+    if (step) this.showStep(chosen, step, elsewhere);
+    else this.showNoStep(chosen, elsewhere);
+  }
+
+  showNoStep(chosen, elsewhere) {
+    const { trouble } = chosen;
+    const state = JSON.stringify([trouble?.title, trouble?.detail, elsewhere]);  // said aloud, so only when it changes
+    if (chosen.state === state) return;
+    chosen.state = state;
+    if (trouble) showProblem(this.output, trouble);
+    else showStatus(this.output, 'waiting', ['no step has come yet', elsewhere]);
+  }
+
+  showStep(chosen, step, elsewhere) {
     const old = this.whyOld(chosen);
-    const elsewhere = whyElsewhere(chosen.track, this.maps.shown());
-    const drawn = JSON.stringify([step.sequence, old, elsewhere]);
+    const [first] = step.clusters;
+    const side = first && inView(this.view, first.pose)[1];  // of the 180th meridian
+    const drawn = JSON.stringify([step.sequence, old, elsewhere, side]);
     if (chosen.drawn !== drawn) this.draw(chosen, step, old, elsewhere);
     chosen.drawn = drawn;
     chosen.age.textContent = `${Math.max(0, (Date.now() - chosen.heard) / 1000).toFixed(0)} s ago`;
+    chosen.line.draw();
   }
 
   draw(chosen, step, old, elsewhere) {
@@ -159,20 +174,14 @@ export class Tracks {
     }
   }
 
-  /// Draws on the line what the track was sure of since; where it was not, there is a gap.
+  /// Draws on the line what the track was sure of since.
   async extend(chosen) {
-    const last = chosen.track.last?.sequence ?? -1;
-    if (chosen.extending || last <= chosen.after) return;
+    const { id, line, track } = chosen;
+    if (chosen.extending || (track.last?.sequence ?? -1) <= line.after) return;
     chosen.extending = true;
-    const answer = await get(`${urlOf(chosen.id)}/history?after=${chosen.after}&limit=${LINE_STEPS}`).catch(() => null);
+    const answer = await get(`${urlOf(id)}/history?after=${line.after}&limit=${LINE_STEPS}`).catch(() => null);
     chosen.extending = false;
-    for (const { geometry, properties } of answer?.features ?? []) {
-      if (properties.sequence === undefined) continue;  // the line of all
-      chosen.after = properties.sequence;
-      if (!geometry) chosen.lines.push([]);
-      else chosen.lines.at(-1).push(inView(this.view, { lat: geometry.coordinates[1], lon: geometry.coordinates[0] }));
-    }
-    chosen.lines = chosen.lines.filter((line, i) => line.length || i === chosen.lines.length - 1);
-    if (chosen === this.chosen) this.path.setLatLngs(chosen.lines);
+    line.add(answer?.features ?? []);
+    if (chosen === this.chosen) line.draw();
   }
 }

@@ -18,9 +18,9 @@ const converged = {
   sequence: 1, status: 'converged', pose: { lat: 37, lon: 38, heading_deg: 0 }, heading_sigma_deg: 1, radius95_m: 6,
   clusters: [cluster(37, 0.9), cluster(37.1, 0.1)], cluster_count: 2, measurement: 'accepted', since_accepted_s: 0, resets: 0, drifts: false,
 };
-const track = (id, last, silent_s = 0.1) => ({ id, map: { name: 'city', version: '1' }, created_us: 0, silent_s, stale: silent_s >= 60, last });
+const track = (id, last, silent_s = 0.1) => ({ id, map: { name: 'city', version: '1' }, created_us: 0, silent_s, last_age_s: silent_s, stale: silent_s >= 60, last });
 const ended = { status: 410, title: 'Gone', code: 'track-ended' };
-const place = (sequence, lat) => ({ geometry: lat && { type: 'Point', coordinates: [38, lat] }, properties: { sequence } });
+const place = (sequence, lat, lon = 38) => ({ geometry: lat && { type: 'Point', coordinates: [lon, lat] }, properties: { sequence } });
 const answer = (one, history = []) => { service.answers = { '/v1/tracks/one': one, '/v1/tracks/one/history': { features: history } }; };
 
 const list = node();
@@ -89,10 +89,23 @@ await run({
     answer({ ...track('one', converged), last_age_s: 14 });
     await tracks.look();
     assert.match(details.textContent, /14 s ago/);
+    assert.match(output.textContent, /the last step is older than 10 s/);
     assert.ok(isOld());
     answer(track('one', converged));
     await tracks.look();
     assert.ok(!isOld());
+  },
+  async 'a place from before the service was started anew is an old one, since nobody knows its age'() {
+    const { last_age_s, ...restarted } = track('one', converged, 2);
+    answer(restarted);
+    await tracks.look();
+    assert.ok(isOld());
+    assert.match(output.textContent, /the service was started anew/);
+    assert.deepEqual(colours(), [RED, RED]);
+    answer(track('one', { ...converged, sequence: 2 }));
+    await tracks.look();
+    assert.ok(!isOld());
+    assert.deepEqual(colours(), [GREEN, YELLOW]);
   },
   async 'an estimate grows old also while an answer is awaited'() {
     service.answers = { '/v1/tracks/one': () => new Promise(() => {}) };
@@ -110,7 +123,7 @@ await run({
     answer(track('one', converged, 30));
     await tracks.follow('one');
     assert.match(details.textContent, /30 s ago/);
-    assert.match(output.textContent, /no step for 10 s/);
+    assert.match(output.textContent, /the last step is older than 10 s/);
     assert.deepEqual(colours(), [RED, RED]);
     answer(track('one', { ...converged, sequence: 2 }));
     await tracks.look();
@@ -220,6 +233,37 @@ await run({
     await tracks.follow('one');
     const longitudes = [...drawn].filter(({ kind }) => kind === 'point').map(({ at }) => at[1]);
     assert.deepEqual(longitudes.map((lon) => lon.toFixed(2)), ['180.02', '179.99']);
+  },
+  async 'places and the line go to the side of the 180th meridian that is shown, also when another view is chosen'() {
+    const longitudes = () => [...drawn].filter(({ kind }) => kind === 'point').map(({ at }) => at[1].toFixed(2));
+    const line = () => tracks.path.at.map((part) => part.map(([, lon]) => lon.toFixed(2)));
+    view.middle = 0;
+    const east = cluster(37, 1);
+    east.pose.lon = -179.98;
+    answer(track('one', { ...converged, sequence: 3, clusters: [east] }), [place(0, 37, 179.99), place(1, 37, -179.99), place(2), place(3, 37, -179.98)]);
+    await tracks.follow('one');
+    assert.deepEqual(longitudes(), ['-179.98']);
+    assert.deepEqual(line(), [['-180.01', '-179.99'], ['-179.98']]);
+    view.middle = 180.01;
+    await tracks.look();
+    assert.deepEqual(longitudes(), ['180.02']);
+    assert.deepEqual(line(), [['179.99', '180.01'], ['180.02']]);
+    view.middle = 38;
+  },
+  async 'what stays as it is is not said again and again'() {
+    for (const body of [track('one'), ended]) {
+      answer(body);
+      await tracks.follow('one');
+      const [said] = output.children;
+      assert.ok(said);
+      await tracks.look();
+      assert.equal(output.children[0], said);
+    }
+    answer(track('one'));
+    await tracks.follow('one');
+    service.answers = null;
+    await tracks.look();
+    assert.match(output.textContent, /gives no answer/);
   },
   async 'a service that does not answer takes no track off the list'() {
     const ids = () => list.options.map(({ value }) => value);

@@ -41,7 +41,8 @@ void count_in_blocks(const cv::Mat& observed, int block_px, cv::Mat blocks) {
   cv::reduce(observed, line, 0, cv::REDUCE_SUM, CV_32S);
   blocks.setTo(cv::Scalar(0));
   for (int col = 0; col < line.cols; ++col) {
-    blocks.at<float>(0, col / block_px) += static_cast<float>(line.at<int>(0, col) / 255);
+    const int pixels = line.at<int>(0, col) / 255;
+    blocks.at<float>(0, col / block_px) += static_cast<float>(pixels);
   }
 }
 

@@ -22,7 +22,7 @@ import pathlib
 import sys
 
 from log import Log
-from output import Output
+from output import FlightOutput, ReadOutput
 from positions import FORMATS_WITH_AGE, FORMATS_WITHOUT_AGE, Sender
 from preflight import check
 from service import Refused, Service, Silent
@@ -107,7 +107,7 @@ def fly(lines, options):
                   lambda track_id: print(f"a track begins: {service.page_of(track_id)}", file=sys.stderr, flush=True))
     folder = pathlib.Path(options.steps or ".").parent
     frame_fields = dict(options.frame)
-    output = Output(must_be_read=sender is None)
+    output = FlightOutput() if sender else ReadOutput()
     all_taken = True
     for line in NewestLine(lines) if options.live else all_lines(lines):
         for passed in line.passed:
@@ -129,7 +129,7 @@ def fly(lines, options):
             all_taken = False
             continue
         output.print({**answer, "image": line.step["image"]} if line.has_picture else answer)
-    return all_taken and not output.has_failed
+    return output.finish() and all_taken
 
 
 def main(arguments=None):

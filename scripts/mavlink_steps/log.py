@@ -1,9 +1,9 @@
 """What a program tells on standard error. scripts/ground_station and scripts/mavlink_steps each have a copy of this
 file, since their folders are used apart."""
-import contextlib
 import datetime
 import io
-import os
+
+from unwaited import Unwaited
 
 
 def _now():
@@ -13,16 +13,14 @@ def _now():
 
 class Log(io.TextIOBase):
     """In place of sys.stderr: each line begins with its time. A flight goes on where nothing can be told, as on a full
-    disk."""
+    disk, or nobody reads it."""
 
     def __init__(self, stream):
-        self._stream = stream or open(os.devnull, "w", encoding="utf-8")  # None where it was closed from the start
+        self._to = Unwaited(stream)
         self._begins_line = True
 
     def write(self, text):
-        with contextlib.suppress(OSError):
-            for line in text.splitlines(keepends=True):
-                self._stream.write(f"{_now()} {line}" if self._begins_line else line)
-                self._begins_line = line.endswith("\n")
-            self._stream.flush()
+        for line in text.splitlines(keepends=True):
+            self._to.write(f"{_now()} {line}" if self._begins_line else line)
+            self._begins_line = line.endswith("\n")
         return len(text)

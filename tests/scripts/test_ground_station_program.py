@@ -217,12 +217,21 @@ class Positions(unittest.TestCase):
                 with FakeService() as fake:
                     program = self.run_program(fake, "nmea", lines, *self.PATIENT, stdout=stream)
                 self.assertEqual((program.returncode, self.positions()), (1, 3), program.stderr)
-                self.assertEqual(program.stderr.count("no answers are printed from here, the flight goes on"), 1)
+                self.assertEqual(program.stderr.count("answers are not printed, the flight goes on"), 1)
                 self.assertIn(why, program.stderr)
                 with FakeService() as fake:
                     program = self.run_program(fake, "nmea", lines, *self.PATIENT, stderr=stream)
                 self.assertEqual((program.returncode, self.positions()), (0, 3))
                 self.assertEqual(program.stdout.count("\n"), 3)
+
+    def test_come_where_the_window_is_stopped(self):
+        """As by Ctrl-S: nobody reads what is written to it."""
+        lines = 20 * '{"north_m": 0, "east_m": 0, "yaw_deg": 0}\n' + 600 * "no step\n"
+        long = (200, {"status": "searching", "padding": "x" * 20_000})
+        reader, window = os.pipe()
+        with FakeService(20 * [long]) as fake, open(reader), open(window, "w") as stopped:
+            program = self.run_program(fake, "nmea", lines, *self.PATIENT, stdout=stopped, stderr=stopped)
+        self.assertEqual((program.returncode, self.positions()), (1, 20))
 
     def test_come_where_there_is_no_standard_error(self):
         with FakeService() as fake:

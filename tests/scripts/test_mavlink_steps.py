@@ -339,7 +339,7 @@ class Program(unittest.TestCase):
 
 class LogAndChecksum(unittest.TestCase):
     def test_are_those_of_the_ground_station_too(self):
-        for file in ("log.py", "crc.py"):
+        for file in ("log.py", "unwaited.py", "crc.py"):
             self.assertEqual((PROGRAM / file).read_text(), (PROGRAM.parent / "ground_station" / file).read_text())
 
 

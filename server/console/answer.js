@@ -12,6 +12,7 @@ function showSent(output, sent, size) {
 export class Answer {
   #questions = new LastQuestion();
   #fix = null;
+  #old = '';
 
   constructor(view, output) {
     this.view = view;
@@ -39,6 +40,7 @@ export class Answer {
   forget() {
     this.#questions.next();
     this.#fix = null;
+    this.#old = '';
     this.figures.clearLayers();
     this.output.replaceChildren();
   }
@@ -56,6 +58,8 @@ export class Answer {
   }
 
   #outdate(why) {
+    if (this.#old === why) return;  // said aloud, so only when it changes
+    this.#old = why;
     showOld(this.output, why);
     this.#draw('no_fix');
   }

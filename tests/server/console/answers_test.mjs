@@ -147,6 +147,9 @@ await run({
       answer.mapsChanged(maps);
       assert.ok(isOld());
       assert.deepEqual(colours(), [RED]);
+      const [said] = output.children;
+      answer.mapsChanged(maps);
+      assert.equal(output.children[0], said, 'it is not said again at each look at the maps');
     }
     answer.forget();
     answer.mapsChanged(others);

@@ -46,8 +46,8 @@ class Squares {
 
 Pixel localizability_pixel(const PlaceAnswer& answer, TileStyle style) {
   if (style == TileStyle::kGrey) return grey_pixel(answer.probability);
-  // Blue, green, red of no fix, ambiguous, fix on the operator's page.
-  constexpr std::array<double, 3> kNoFix{130, 139, 242};
+  // Blue, green, red. The red is much darker than the green, for those who do not tell the two by their hue.
+  constexpr std::array<double, 3> kNoFix{37, 48, 217};
   constexpr std::array<double, 3> kAmbiguous{93, 201, 244};
   if (answer.fix) return {161, 224, 126, 128};
   const auto blend = [&](std::size_t channel) {

@@ -3,10 +3,12 @@ import { attempt, COLOURS, inView, LastQuestion, moveTo, request, reveal, showSt
 import { bytesOf } from './upload.js';
 
 const PIECES_AT_A_TIME = 8;
-const LOOKS = {
+/// A line has no word beside it: its red is much darker than its green, for those who do not tell the two by their hue.
+const DARK_RED = '#d93025';
+export const LOOKS = {
   distinct: { color: COLOURS.fix, means: 'a frame gives a fix' },
   sparse: { color: COLOURS.ambiguous, means: 'its roads fit elsewhere, too, or are too few' },
-  bare: { color: COLOURS.no_fix, means: 'hardly any road' },
+  bare: { color: DARK_RED, means: 'hardly any road' },
   unknown: { color: '#9aa0a6', means: 'not on the map' },
 };
 const km = (metres) => (metres / 1000).toFixed(1);

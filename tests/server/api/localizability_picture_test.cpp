@@ -98,11 +98,11 @@ TEST(LocalizabilityPicture, IsGreenForAFixAloneAndAtMostYellowBelow) {
                                         [&](GridPoint) { return std::optional(answer); });
     return cv::imdecode(*png, cv::IMREAD_UNCHANGED).at<cv::Vec4b>(100, 100);
   };
-  const cv::Vec4b red(130, 139, 242, 128);
+  const cv::Vec4b red(37, 48, 217, 128);
   const cv::Vec4b yellow(93, 201, 244, 128);
   const cv::Vec4b green(161, 224, 126, 128);
   EXPECT_EQ(colour_of({false, 0.0}), red);
-  EXPECT_EQ(colour_of({false, 0.5}), cv::Vec4b(112, 170, 243, 128)) << "in between";
+  EXPECT_EQ(colour_of({false, 0.5}), cv::Vec4b(65, 125, 231, 128)) << "in between";
   EXPECT_EQ(colour_of({false, 1.0}), yellow) << "sure, and yet no fix";
   EXPECT_EQ(colour_of({true, 0.991}), green);
   EXPECT_EQ(colour_of({true, 1.0}), green);

@@ -1,11 +1,11 @@
 // A planned route on the page: node route_test.mjs FOLDER/OF/THE/PAGE
 import assert from 'node:assert/strict';
-import { drawn, GREEN, load, node, RED, run, service, view, YELLOW } from './page.mjs';
+import { drawn, GREEN, load, node, run, service, view, YELLOW } from './page.mjs';
 
-const { linesAbout, longestWithout, Route } = await load('route.js');
+const { linesAbout, longestWithout, LOOKS, Route } = await load('route.js');
 const output = node();
 const route = new Route(view, output);
-const GREY = '#9aa0a6';
+const [DARK_RED, GREY] = ['#d93025', '#9aa0a6'];
 const EVERY_M = 200;
 
 const properties = (kinds) => kinds.map((place, i) => ({ from_m: EVERY_M * i, to_m: EVERY_M * (i + 1), place, probability: 0.5 }));
@@ -48,9 +48,16 @@ await run({
     await route.ask('/map', file, { footprint_m: 400 });
     assert.deepEqual(asked, [
       { method: 'POST', bytes: 7, footprint: '400', first: 0, end: 8 }, { method: 'POST', bytes: 7, footprint: '400', first: 8, end: 11 }]);
-    assert.deepEqual(colours(), [GREEN, ...Array(8).fill(YELLOW), RED, GREY]);
+    assert.deepEqual(colours(), [GREEN, ...Array(8).fill(YELLOW), DARK_RED, GREY]);
     assert.match(output.textContent, /mission\.plan\n2\.2 km/);
     assert.ok(output.revealed);
+  },
+  'ground without a fix is told from ground with one also by who sees no hues'() {
+    /// Relative luminance (WCAG 2).
+    const light = (colour) => [1, 3, 5].map((at) => (parseInt(colour.slice(at, at + 2), 16) / 255 + 0.055) / 1.055)
+      .reduce((sum, value, i) => sum + [0.2126, 0.7152, 0.0722][i] * value ** 2.4, 0.05);
+    assert.ok(light(LOOKS.distinct.color) > 2.5 * light(LOOKS.bare.color));
+    assert.ok(light(LOOKS.bare.color) > 3 * light('#161b21'), 'nor is it lost on the ground of the map');
   },
   async 'the footprint of a camera is asked for by its field of view, and told with the heights that it follows'() {
     const heights = [{ agl_m: 120.4, footprint_m: 160 }, {}, { agl_m: 300, footprint_m: 400.4 }];

@@ -112,7 +112,8 @@ async function refreshMaps() {
   const asked = listsAsked;
   const list = await request('/v1/maps', { signal: AbortSignal.timeout(PATIENCE_MS) }).catch(() => null);
   if (asked !== listsAsked) return;
-  by('trouble').textContent = list ? '' : 'The service gives no answer. This page shows what it said before.';
+  const trouble = list ? '' : 'The service gives no answer. This page shows what it said before.';
+  if (by('trouble').textContent !== trouble) by('trouble').textContent = trouble;  // said aloud, so only when it changes
   if (list) await attempt(by('about'), () => showMaps(list));
 }
 

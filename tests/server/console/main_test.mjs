@@ -142,6 +142,10 @@ await run({
     service.answers = null;
     await acts.focus();
     assert.match(by('trouble').textContent, /gives no answer/);
+    const said = by('trouble').textContent;
+    Object.defineProperty(by('trouble'), 'textContent', { configurable: true, get: () => said, set() { assert.fail('said again at the next look'); } });
+    await acts.focus();
+    delete by('trouble').textContent;
     service.answers = answers;
     await acts.focus();
     assert.equal(by('trouble').textContent, '');

@@ -21,11 +21,21 @@ case " $* " in
 esac
 case " $* " in *" install "*) echo "Unpacking cmake" ;; esac
 """
+#: The locks of the lists and of the packages, while somebody is at them: until the file "rests" has two lines.
 LOCKED = """#!/bin/sh
 case " $* " in
-  *" DPkg::Lock::Timeout="[1-9]* | *" update "*) ;;
+  *" DPkg::Lock::Timeout="[1-9]*) ;;
+  *" update "*)
+    [ "$(wc -l < "${0%/*}/rests")" -ge 2 ] || { echo "E: Could not get lock /var/lib/apt/lists/lock" >&2; exit 100; } ;;
   *) echo "E: Could not get lock /var/lib/dpkg/lock-frontend" >&2; exit 100 ;;
 esac
+"""
+SLEEP = """#!/bin/sh
+echo "$1" >> "${0%/*}/rests"
+"""
+BROKEN = """#!/bin/sh
+echo "E: Malformed entry 1 in list file /etc/apt/sources.list" >&2
+exit 100
 """
 NOTHING = "#!/bin/sh\n"
 DEBIAN_ON_ARM = """#!/bin/sh
@@ -84,8 +94,19 @@ class Installation(unittest.TestCase):
                                                "python3-opencv", "python3-torch"])
 
     def test_waits_for_the_upgrades_of_a_machine_that_was_just_started(self):
+        rests = self.folder / "rests"
+        rests.touch()
         self.write_program("apt-get", LOCKED)
+        self.write_program("sleep", SLEEP)
         self.run_program(capture_output=True)
+        self.assertEqual(rests.read_text(), "10\n10\n")
+
+    def test_fails_at_once_where_waiting_does_not_help(self):
+        self.write_program("apt-get", BROKEN)
+        self.write_program("sleep", BROKEN)
+        with self.assertRaises(subprocess.CalledProcessError) as failure:
+            self.run_program(capture_output=True, text=True)
+        self.assertIn("E: Malformed entry 1", failure.exception.stderr)
 
 
 if __name__ == "__main__":

@@ -64,6 +64,20 @@ bool are_ones_only(const std::vector<float>& values, float largest) {
   return largest > 1.0F && std::ranges::find(values, 1.0F) != values.end() && std::ranges::none_of(values, between);
 }
 
+/// Those by which the range of shares is chosen and are_ones_only() tells, of however many.
+std::vector<float> telling_values(const std::vector<float>& values) {
+  if (values.empty()) return {};
+  const auto [min, max] = std::ranges::minmax(values);
+  std::vector<float> telling{min, max};
+  float above_one = max;
+  for (const float v : values) {
+    if (v > 1.0F) above_one = std::min(above_one, v);
+  }
+  telling.push_back(above_one);
+  if (std::ranges::find(values, 1.0F) != values.end()) telling.push_back(1.0F);
+  return telling;
+}
+
 /// What an image holds, as far as those of one source have to agree.
 struct Content {
   explicit Content(const RasterFile& file)
@@ -162,15 +176,15 @@ struct Mosaic::Handle {
 
 Mosaic::Mosaic(const std::vector<std::string>& paths, const RasterOptions& options, ValueRule rule, UtmZone zone)
     : options_(options), rule_(rule), zone_(zone), gsd_m_(std::numeric_limits<double>::infinity()) {
-  std::vector<float> values;
+  ThinnedValues values;
   for (const std::string& path : paths) add_image(path, values);
-  choose_ranges(std::move(values));
+  choose_ranges(std::move(values).take());
   if (rule == ValueRule::kShare) channels_ = 1;
   if (rule == ValueRule::kPicture || options.collar) find_collars();
 }
 
 /// Adds to `values` what is sampled of an image whose type does not say its range.
-void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
+void Mosaic::add_image(const std::string& path, ThinnedValues& values) {
   RasterFile file(path, options_);
   Content content(file);
   if (!images_.empty()) {
@@ -199,9 +213,8 @@ void Mosaic::add_image(const std::string& path, std::vector<float>& values) {
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
     image.sampled = sampled_in(sample);
-    const std::vector<float> ground = rule_ == ValueRule::kPicture ? without_fill(sample) : sample;
-    values.insert(values.end(), ground.begin(), ground.end());
-    if (rule_ == ValueRule::kShare && look_beyond_samples(file, image.sampled)) values.push_back(image.sampled.max);
+    values.add(rule_ == ValueRule::kPicture ? without_fill(sample) : telling_values(sample));
+    if (rule_ == ValueRule::kShare && look_beyond_samples(file, image.sampled)) values.add({image.sampled.max});
   }
   images_.push_back(std::move(image));
 }

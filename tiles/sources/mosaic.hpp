@@ -17,6 +17,7 @@
 #include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
 #include "core/units/provenance.hpp"
+#include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/position_error.hpp"
 #include "tiles/sources/raster_file.hpp"
 #include "tiles/sources/road_values.hpp"
@@ -67,7 +68,7 @@ class Mosaic {
  private:
   struct Image;
   struct Handle;
-  void add_image(const std::string& path, std::vector<float>& values);
+  void add_image(const std::string& path, ThinnedValues& values);
   void choose_ranges(std::vector<float> values);
   void find_collars();
   std::unique_ptr<Handle> borrow(std::size_t image, const GridBox& box, double gsd_m) const;

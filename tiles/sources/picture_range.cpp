@@ -24,6 +24,17 @@ std::optional<float> fill_of(const std::vector<float>& values) {
 
 }  // namespace
 
+void ThinnedValues::add(const std::vector<float>& values) {
+  for (; skip_ < values.size(); skip_ += step_) {
+    kept_.push_back(values[skip_]);
+    if (kept_.size() < most_) continue;
+    for (std::size_t i = 0; i < kept_.size() / 2; ++i) kept_[i] = kept_[2 * i];
+    kept_.resize(kept_.size() / 2);
+    step_ *= 2;
+  }
+  skip_ -= values.size();
+}
+
 std::vector<float> without_fill(std::vector<float> values) {
   if (const std::optional<float> fill = fill_of(values)) std::erase(values, *fill);
   return values;

@@ -9,6 +9,7 @@
 
 #include "core/units/error.hpp"
 #include "tiles/sources/nodata.hpp"
+#include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/raster_reference.hpp"
 #include "tiles/sources/raster_windows.hpp"
 #include "tiles/sources/road_values.hpp"
@@ -243,26 +244,41 @@ std::vector<cv::Rect> RasterFile::parts() const {
 
 std::vector<cv::Rect> RasterFile::sample_windows() const { return spread_windows(parts()); }
 
-std::vector<float> RasterFile::sample_values() {
+std::vector<cv::Rect> RasterFile::all_windows() const {
+  std::vector<cv::Rect> windows = windows_of_blocks(first_band());
+  const std::vector<cv::Rect> held = parts();
+  std::erase_if(windows, [&](const cv::Rect& window) {
+    return std::ranges::none_of(held, [&](const cv::Rect& part) { return !(part & window).empty(); });
+  });
+  return windows;
+}
+
+std::vector<float> RasterFile::valid_values(cv::Rect window) {
   std::vector<float> values;
-  for (const cv::Rect& window : sample_windows()) {
-    const auto [raw, valid] = read_numbers(window);
-    for (int row = 0; row < raw.rows; ++row) {
-      for (int col = 0; col < raw.cols; ++col) {
-        if (valid.at<std::uint8_t>(row, col) == 0) continue;
-        const float* pixel = raw.ptr<float>(row, col);
-        values.insert(values.end(), pixel, pixel + raw.channels());
-      }
+  const auto [raw, valid] = read_numbers(window);
+  for (int row = 0; row < raw.rows; ++row) {
+    for (int col = 0; col < raw.cols; ++col) {
+      if (valid.at<std::uint8_t>(row, col) == 0) continue;
+      const float* pixel = raw.ptr<float>(row, col);
+      values.insert(values.end(), pixel, pixel + raw.channels());
     }
   }
   return values;
 }
 
+std::vector<float> RasterFile::sample_values() {
+  constexpr std::size_t kMost = std::size_t{1} << 23U;
+  ThinnedValues values(kMost);
+  for (const cv::Rect& window : sample_windows()) values.add(valid_values(window));
+  if (values.empty()) {  // a town in a large frame may lie between them
+    for (const cv::Rect& window : all_windows()) values.add(valid_values(window));
+  }
+  return std::move(values).take();
+}
+
 float RasterFile::largest_value(float enough) {
   float largest = 0.0F;
-  const std::vector<cv::Rect> held = parts();
-  for (const cv::Rect& window : windows_of_blocks(first_band())) {
-    if (std::ranges::none_of(held, [&](const cv::Rect& part) { return !(part & window).empty(); })) continue;
+  for (const cv::Rect& window : all_windows()) {
     const cv::Mat raw = read_stored(window);
     largest = std::max(largest, static_cast<float>(extremes(raw, read_validity(window, raw)).high));
     if (largest > enough) break;

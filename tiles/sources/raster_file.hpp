@@ -88,13 +88,16 @@ class RasterFile {
   std::vector<cv::Rect> parts() const;
   /// Small windows spread evenly over the parts, the same at every call.
   std::vector<cv::Rect> sample_windows() const;
-  /// Values of valid pixels in these windows as the file stores them: of a palette the indices.
+  /// Values of valid pixels in these windows, or else anywhere, as the file stores them: of a palette the indices.
   std::vector<float> sample_values();
   /// Of all valid pixels as the file stores them, and 0; the first above `enough` that is met.
   float largest_value(float enough);
 
  private:
   void find_bands();
+  /// Those of all blocks in which the parts lie.
+  std::vector<cv::Rect> all_windows() const;
+  std::vector<float> valid_values(cv::Rect window);
   cv::Mat read_alpha(cv::Rect window);
   double sample_full_opacity();
   cv::Mat read_stored(cv::Rect window);

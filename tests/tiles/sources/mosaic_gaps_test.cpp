@@ -1,4 +1,4 @@
-// VRTs that gather images far from each other, as those of a region's towns.
+// Images far from each other in a VRT, or in a file that holds nothing else, as those of a region's towns.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,6 +64,15 @@ TEST_F(MosaicGaps, LeaveTheRangeOfValuesThatOfTheImages) {
                       ValueRule::kPicture, kZone);
   EXPECT_NEAR(mosaic.range().low, 300.0, 50.0);
   EXPECT_NEAR(mosaic.range().high, 2300.0, 200.0);
+}
+
+TEST_F(MosaicGaps, OfAFileLeaveTheRangeOfValuesThatOfItsTown) {
+  const testing::RasterSpec spec{.width = 2000, .height = 2000, .type = GDT_UInt16, .nodata = 0};
+  const auto within = [](int at) { return at >= 80 && at < 110; };  // between the windows that are sampled
+  const auto town = [&](int, int col, int row) { return within(col) && within(row) ? 500 + 10 * (col + row) : 0; };
+  const Mosaic mosaic({write_raster(folder / "town.tif", spec, town)}, {}, ValueRule::kPicture, kZone);
+  EXPECT_NEAR(mosaic.range().low, 500.0 + 10.0 * 160, 100.0);
+  EXPECT_NEAR(mosaic.range().high, 500.0 + 10.0 * 218, 100.0);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include "tiles/sources/raster_reference.hpp"
 #include "tiles/sources/raster_windows.hpp"
 #include "tiles/sources/road_values.hpp"
+#include "tiles/sources/stored_parts.hpp"
 #include "tiles/sources/vrt_parts.hpp"
 
 namespace roadfix {
@@ -99,6 +100,22 @@ void RasterFile::find_bands() {
   has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
   filled_ = filled_parts(*dataset_, colour_bands_.front());
   for (const int band : colour_bands_) nodata_.push_back(nodata_of(*dataset_->GetRasterBand(band)));
+  if (!filled_) find_stored_parts();
+}
+
+void RasterFile::find_stored_parts() {
+  std::vector<int> bands = colour_bands_;
+  if (alpha_band_ > 0) bands.push_back(alpha_band_);
+  std::optional<StoredParts> stored = stored_parts(*dataset_, bands);
+  if (stored && is_nothing(stored->left_out)) filled_ = std::move(stored->parts);
+}
+
+bool RasterFile::is_nothing(cv::Point pixel) {
+  const cv::Rect window(pixel, cv::Size(1, 1));
+  if (alpha_band_ > 0) return cv::countNonZero(read_alpha(window)) == 0;
+  cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
+  clear_nodata(read_stored(window), nodata_, valid);
+  return cv::countNonZero(valid) == 0;
 }
 
 std::optional<ValueRange> RasterFile::declared_range() const {

@@ -84,7 +84,8 @@ class RasterFile {
   void set_full_opacity(double value) { full_opacity_ = value; }
   /// 0 to 1 by the alpha band or the mask, which the image must have; as CV_32F.
   cv::Mat read_opacity(cv::Rect window);
-  /// Of a VRT those in which its images lie, else one, all of it. None is empty, but there may be none.
+  /// Of a VRT those in which its images lie, of a file that leaves blocks of nothing out those that it holds, else one,
+  /// all of it. None is empty, but there may be none.
   std::vector<cv::Rect> parts() const;
   /// Small windows spread evenly over the parts, the same at every call.
   std::vector<cv::Rect> sample_windows() const;
@@ -95,6 +96,9 @@ class RasterFile {
 
  private:
   void find_bands();
+  void find_stored_parts();
+  /// By its nodata values or its opacity, which are those of all that a file leaves out.
+  bool is_nothing(cv::Point pixel);
   /// Those of all blocks in which the parts lie.
   std::vector<cv::Rect> all_windows() const;
   std::vector<float> valid_values(cv::Rect window);
@@ -113,7 +117,7 @@ class RasterFile {
   std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
   int alpha_band_ = 0;                                ///< 0 without
   std::optional<double> full_opacity_;                ///< as far as it is known
-  std::optional<std::vector<cv::Rect>> filled_;       ///< parts of a VRT in which its images lie
+  std::optional<std::vector<cv::Rect>> filled_;       ///< parts in which a file with gaps holds something
   bool signed_bytes_ = false;                         ///< in the type of unsigned ones
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
   std::mutex turns_;                                  ///< with the dataset, for reading

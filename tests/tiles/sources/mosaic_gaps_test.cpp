@@ -66,6 +66,32 @@ TEST_F(MosaicGaps, LeaveTheRangeOfValuesThatOfTheImages) {
   EXPECT_NEAR(mosaic.range().high, 2300.0, 200.0);
 }
 
+TEST_F(MosaicGaps, OfBlocksThatAFileLeavesOutAreTouchedByNoBlockOfAMap) {
+  testing::RasterSpec spec{.width = 4096, .height = 4096, .nodata = 0};
+  spec.creation = {"TILED=YES", "SPARSE_OK=TRUE"};
+  const auto town = [](int, int col, int row) { return col < 300 && row < 200 ? 40 + (col + row) % 90 : 0; };
+  const std::string path = write_raster(folder / "town.tif", spec, town);
+  const Mosaic mosaic({path}, {}, ValueRule::kPicture, kZone);
+  const GridPoint corner{mosaic.extent().min.east_m, mosaic.extent().max.north_m};
+  const GridBox on_town{{corner.east_m, corner.north_m - 256.0}, {corner.east_m + 256.0, corner.north_m}};
+  EXPECT_TRUE(mosaic.touches(on_town));
+  EXPECT_GT(cv::countNonZero(mosaic.view(on_town, 1.0).observed), 256 * 190);
+  EXPECT_FALSE(mosaic.touches(
+      {{corner.east_m + 3000.0, corner.north_m - 3500.0}, {corner.east_m + 3500.0, corner.north_m - 3000.0}}));
+}
+
+TEST_F(MosaicGaps, OfBlocksThatAFileLeavesOutAreSeenWhereZeroIsAValue) {
+  testing::RasterSpec spec{.width = 4096, .height = 4096};
+  spec.creation = {"TILED=YES", "SPARSE_OK=TRUE"};
+  const auto roads = [](int, int col, int row) { return col < 300 && row < 200 ? 255 : 0; };
+  const Mosaic mosaic({write_raster(folder / "roads.tif", spec, roads)}, {}, ValueRule::kShare, kZone);
+  const GridPoint corner{mosaic.extent().min.east_m, mosaic.extent().max.north_m};
+  const GridBox beside{{corner.east_m + 3000.0, corner.north_m - 3500.0},
+                       {corner.east_m + 3500.0, corner.north_m - 3000.0}};
+  ASSERT_TRUE(mosaic.touches(beside));
+  EXPECT_EQ(cv::countNonZero(mosaic.view(beside, 2.0).observed), 250 * 250);
+}
+
 TEST_F(MosaicGaps, OfAFileLeaveTheRangeOfValuesThatOfItsTown) {
   const testing::RasterSpec spec{.width = 2000, .height = 2000, .type = GDT_UInt16, .nodata = 0};
   const auto within = [](int at) { return at >= 80 && at < 110; };  // between the windows that are sampled

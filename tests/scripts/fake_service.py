@@ -15,6 +15,9 @@ sys.path.insert(0, str(PROGRAM))
 
 from crc import crc  # noqa: E402
 
+#: What the program says of this service's map before a flight.
+BEFORE = r"\S+Z the map 'm' has version 7f3a\n"
+
 CONVERGED = (200, {"status": "converged", "pose": {"lat": 7.0, "lon": 8.0}, "sigma_m": [4.0, 2.0]})
 
 #: What something in between answers.

@@ -69,9 +69,9 @@ void write_files(const FlyOptions& options, const std::vector<fly::FilterRuns>& 
   write_file(options.geojson_file, json_text({{"type", "FeatureCollection"}, {"features", features}}));
 }
 
-void require_known_once(const std::vector<std::string>& filters) {
+void require_known_once(const std::vector<std::string>& filters, int particles) {
   for (const std::string& filter : filters) {
-    fly::filter_named(filter, FlyOptions().service.filter.particles);
+    fly::filter_named(filter, particles);
     if (std::ranges::count(filters, filter) == 1) continue;
     throw InvalidInput("bad-parameter",
                        fmt::format("--filter names {} twice, which flies the same twice: name each once", filter));
@@ -82,7 +82,7 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
   fly::ServicePlan plan = options.service;
   plan.filter.vehicle = vehicle_of(options);
   if (plan.base.empty()) {
-    require_known_once(options.campaign.filters);
+    require_known_once(options.campaign.filters, plan.filter.particles);
     return fly::library_localizers(map, plan.filter, stop);
   }
   if (options.campaign.filters != fly::Campaign().filters) {

@@ -21,17 +21,18 @@ struct Blocks {
 
 /// The lowest or highest values of the columns of a strip, and of these of each block: plain loops, since OpenCV takes
 /// longer to begin with a block than to look at it.
-template <typename Better>
-void reduce_blocks(const cv::Mat& strip, int block_px, cv::ReduceTypes kind, Better better, cv::Mat blocks) {
+void reduce_blocks(const cv::Mat& strip, int block_px, cv::ReduceTypes kind, cv::Mat blocks) {
   cv::Mat line;
   cv::reduce(strip, line, 0, kind);
+  const bool lowest = kind == cv::REDUCE_MIN;
   const int channels = strip.channels();
-  const auto* value = line.ptr<std::uint8_t>();
+  const auto* values = line.ptr<std::uint8_t>();
   auto* block = blocks.ptr<std::uint8_t>();
   for (int col = 0; col < line.cols; ++col) {
     for (int c = 0; c < channels; ++c) {
+      const std::uint8_t value = values[col * channels + c];
       std::uint8_t& best = block[col / block_px * channels + c];
-      best = col % block_px == 0 ? value[col * channels + c] : better(best, value[col * channels + c]);
+      if (col % block_px == 0 || (lowest ? value < best : value > best)) best = value;
     }
   }
 }
@@ -54,16 +55,14 @@ cv::Mat filled(const cv::Mat& pixels, const cv::Mat& unseen, double value) {
 
 Blocks blocks_of(const GroundImage& image, int block_px) {
   const auto whole = [&](int length) { return (length + block_px - 1) / block_px; };
-  const auto lesser = [](std::uint8_t a, std::uint8_t b) { return std::min(a, b); };
-  const auto greater = [](std::uint8_t a, std::uint8_t b) { return std::max(a, b); };
   const cv::Size size(whole(image.pixels.cols), whole(image.pixels.rows));
   Blocks blocks{cv::Mat(size, image.pixels.type()), cv::Mat(size, image.pixels.type()), cv::Mat(size, CV_32FC1)};
   for (int row = 0; row < size.height; ++row) {
     const cv::Range rows(row * block_px, std::min((row + 1) * block_px, image.pixels.rows));
     const cv::Mat strip = image.pixels.rowRange(rows);
     const cv::Mat unseen = image.observed.rowRange(rows) == 0;
-    reduce_blocks(filled(strip, unseen, 255.0), block_px, cv::REDUCE_MIN, lesser, blocks.lowest.row(row));
-    reduce_blocks(filled(strip, unseen, 0.0), block_px, cv::REDUCE_MAX, greater, blocks.highest.row(row));
+    reduce_blocks(filled(strip, unseen, 255.0), block_px, cv::REDUCE_MIN, blocks.lowest.row(row));
+    reduce_blocks(filled(strip, unseen, 0.0), block_px, cv::REDUCE_MAX, blocks.highest.row(row));
     count_in_blocks(~unseen, block_px, blocks.pixels.row(row));
   }
   return blocks;

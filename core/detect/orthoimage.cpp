@@ -10,18 +10,9 @@ namespace {
 /// The part of the imagery that a cut can touch, empty if there is none: a whole city would take long to blur, and
 /// OpenCV warps no picture with a side of 32,767 pixels or more.
 Orthoimage around(const Orthoimage& imagery, const GridPoint& centre, const Footprint& footprint, double gsd_m) {
-  const GroundImage& all = imagery.image;
-  const double blur_m = 4.0 * all.gsd_m + 2.0 * gsd_m;
+  const double blur_m = 4.0 * imagery.image.gsd_m + 2.0 * gsd_m;
   const double reach_m = std::hypot(footprint.width_m, footprint.height_m) / 2.0 + blur_m;
-  const auto pixel = [&](double metres, int count) {
-    return static_cast<int>(std::clamp(std::floor(metres / all.gsd_m), 0.0, static_cast<double>(count)));
-  };
-  const double east_m = centre.east_m - imagery.north_west.east_m;
-  const double south_m = imagery.north_west.north_m - centre.north_m;
-  const cv::Rect part(cv::Point(pixel(east_m - reach_m, all.pixels.cols), pixel(south_m - reach_m, all.pixels.rows)),
-                      cv::Point(pixel(east_m + reach_m, all.pixels.cols), pixel(south_m + reach_m, all.pixels.rows)));
-  return {{all.pixels(part), all.observed(part), all.gsd_m},
-          {imagery.north_west.east_m + part.x * all.gsd_m, imagery.north_west.north_m - part.y * all.gsd_m}};
+  return part_within(imagery, grown({centre, centre}, reach_m));
 }
 
 }  // namespace
@@ -29,6 +20,20 @@ Orthoimage around(const Orthoimage& imagery, const GridPoint& centre, const Foot
 GridBox Orthoimage::box() const {
   return {{north_west.east_m, north_west.north_m - image.pixels.rows * image.gsd_m},
           {north_west.east_m + image.pixels.cols * image.gsd_m, north_west.north_m}};
+}
+
+Orthoimage part_within(const Orthoimage& imagery, const GridBox& box) {
+  const GroundImage& all = imagery.image;
+  const auto pixel = [&](double metres, int count) {
+    return static_cast<int>(std::clamp(std::floor(metres / all.gsd_m), 0.0, static_cast<double>(count)));
+  };
+  const auto at = [&](double east_m, double north_m) {
+    return cv::Point(pixel(east_m - imagery.north_west.east_m, all.pixels.cols),
+                     pixel(imagery.north_west.north_m - north_m, all.pixels.rows));
+  };
+  const cv::Rect part(at(box.min.east_m, box.max.north_m), at(box.max.east_m, box.min.north_m));
+  return {{all.pixels(part), all.observed(part), all.gsd_m},
+          {imagery.north_west.east_m + part.x * all.gsd_m, imagery.north_west.north_m - part.y * all.gsd_m}};
 }
 
 bool sees(const Orthoimage& imagery, GridPoint point) {

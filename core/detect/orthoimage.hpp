@@ -16,6 +16,10 @@ struct Orthoimage {
   GridBox box() const;
 };
 
+/// From the pixel in which the box begins at its north-western corner up to that in which it ends, without that one.
+/// It shares the memory of the imagery, and is empty where they do not meet.
+Orthoimage part_within(const Orthoimage& imagery, const GridBox& box);
+
 /// Whether the imagery holds an observed pixel there.
 bool sees(const Orthoimage& imagery, GridPoint point);
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "core/detect/blank_ground.hpp"
+#include "core/detect/orthoimage.hpp"
 #include "core/units/error.hpp"
 #include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/collar.hpp"
@@ -22,6 +23,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kIdleHandles = 48;
+constexpr double kReachedPixels = 2.0;  // beyond an image, at most
 constexpr ValueRange kExportedBytes{0.0, 254.0};
 /// Windows one above the other that are read at a time by all threads together, or soon again.
 constexpr double kHeightsKept = 6.0;
@@ -117,26 +119,6 @@ void require_no_heights_beside_colours(const Content& first, const Content& othe
                                    "orthophoto itself; if both are imagery, one by one",
                                    colours->path, heights->path));
   }
-}
-
-/// A part of a picture of the ground, in whose pixels it is written.
-struct PictureOf {
-  GridBox box;
-  GroundImage image;
-};
-
-/// Of `whole`, which shows `box`, the pixels that `ground` may reach; it shares ground with the box.
-PictureOf part_over(const GridBox& ground, const GridBox& box, const GroundImage& whole) {
-  const GridBox common = grown(intersection(ground, box), whole.gsd_m);
-  const auto column = [&](double east_m) { return static_cast<int>((east_m - box.min.east_m) / whole.gsd_m); };
-  const auto row = [&](double north_m) { return static_cast<int>((box.max.north_m - north_m) / whole.gsd_m); };
-  const cv::Rect pixels = cv::Rect({column(common.min.east_m), row(common.max.north_m)},
-                                   cv::Point(column(common.max.east_m) + 1, row(common.min.north_m) + 1)) &
-                          cv::Rect({}, whole.pixels.size());
-  const GridPoint corner{box.min.east_m + pixels.x * whole.gsd_m, box.max.north_m - pixels.y * whole.gsd_m};
-  return {{{corner.east_m, corner.north_m - pixels.height * whole.gsd_m},
-           {corner.east_m + pixels.width * whole.gsd_m, corner.north_m}},
-          {whole.pixels(pixels), whole.observed(pixels), whole.gsd_m}};
 }
 
 double bytes_of_rows(const RasterFile& file, double rows) {
@@ -277,8 +259,9 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
   for (std::size_t i = 0; i < images_.size(); ++i) {
     if (!images_[i].touches(box)) continue;
     std::unique_ptr<Handle> handle = borrow(i, box, gsd_m);
-    PictureOf part = part_over(images_[i].footprint, box, result);
-    warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, part.box, part.image);
+    const Orthoimage all{result, {box.min.east_m, box.max.north_m}};
+    Orthoimage part = part_within(all, grown(images_[i].footprint, kReachedPixels * gsd_m));
+    warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, part.box(), part.image);
     give_back(std::move(handle));
     if (rule_ == ValueRule::kPicture) exclude_blank(result);
   }

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+from functools import partial
 from pathlib import Path
 from unittest import mock
 
@@ -46,9 +47,11 @@ class Demo(unittest.TestCase):
             endless = Path(folder, "roadfix")
             endless.write_text("#!/bin/sh\nexec sleep 60\n")
             endless.chmod(0o755)
+            # What a shell without job control starts with & ignores it, and so would all that it starts.
+            heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
             demo = subprocess.Popen([sys.executable, "-B", str(ROOT / "scripts/demo_chain.py"), "--roadfix", str(endless),
                                      "--once", "--keep", folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                                    start_new_session=True)
+                                    start_new_session=True, preexec_fn=heard)
             self.assertIn("roadfix world", demo.stdout.readline())
             os.killpg(demo.pid, signal.SIGINT)  # as a terminal does
             _, told = demo.communicate(timeout=60)

@@ -6,8 +6,8 @@
 #include <map>
 #include <utility>
 
-#include "server/api/tile_ground.hpp"
-#include "server/api/tile_painting.hpp"
+#include "tiles/mercator/tile_ground.hpp"
+#include "tiles/mercator/tile_painting.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -17,7 +17,7 @@ constexpr double kCoarsest = 4.0;  // of the footprint
 
 double tile_m(const MapView& map, int zoom) {
   const GridPoint middle = map.extent.centre();
-  return kTilePixels * metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
+  return mercator::kTilePixels * mercator::metres_per_pixel(map.zone.unproject(middle).lat_deg, zoom);
 }
 
 /// The answers of the squares, each asked for once.
@@ -44,14 +44,14 @@ class Squares {
   std::map<Index, std::optional<PlaceAnswer>> known_;
 };
 
-Pixel localizability_pixel(const PlaceAnswer& answer, TileStyle style) {
-  if (style == TileStyle::kGrey) return grey_pixel(answer.probability);
-  // Blue, green, red. The red is much darker than the green, for those who do not tell the two by their hue.
-  constexpr std::array<double, 3> kNoFix{37, 48, 217};
-  constexpr std::array<double, 3> kAmbiguous{93, 201, 244};
-  if (answer.fix) return {161, 224, 126, 128};
+mercator::Pixel localizability_pixel(const PlaceAnswer& answer, mercator::TileStyle style) {
+  if (style == mercator::TileStyle::kGrey) return mercator::grey_pixel(255.0 * answer.probability);
+  // Red, green, blue. The red is much darker than the green, for those who do not tell the two by their hue.
+  constexpr std::array<double, 3> kNoFix{217, 48, 37};
+  constexpr std::array<double, 3> kAmbiguous{244, 201, 93};
+  if (answer.fix) return {126, 224, 161, 128};
   const auto blend = [&](std::size_t channel) {
-    return static_cast<unsigned char>(std::lround(std::lerp(kNoFix[channel], kAmbiguous[channel], answer.probability)));
+    return static_cast<std::uint8_t>(std::lround(std::lerp(kNoFix[channel], kAmbiguous[channel], answer.probability)));
   };
   return {blend(0), blend(1), blend(2), 128};
 }
@@ -67,21 +67,23 @@ std::optional<double> square_m(const MapView& map, int zoom, double footprint_m)
 
 ZoomRange localizability_zooms(const MapView& map, double footprint_m) {
   ZoomRange zooms;
-  while (zooms.first < kMaxZoom && !square_m(map, zooms.first, footprint_m)) ++zooms.first;
+  while (zooms.first < mercator::kMaxZoom && !square_m(map, zooms.first, footprint_m)) ++zooms.first;
   zooms.last = zooms.first;
-  while (zooms.last < kMaxZoom && square_m(map, zooms.last, footprint_m) > kFinest * footprint_m) ++zooms.last;
+  while (zooms.last < mercator::kMaxZoom && square_m(map, zooms.last, footprint_m) > kFinest * footprint_m)
+    ++zooms.last;
   return zooms;
 }
 
-std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const AnswerAt& answer_at) {
+std::optional<std::vector<std::byte>> localizability_png(const MapView& map, mercator::TileAddress tile,
+                                                         double footprint_m, mercator::TileStyle style,
+                                                         const AnswerAt& answer_at) {
   if (map.extent.empty()) return std::nullopt;
   const std::optional<double> side_m = square_m(map, tile.z, footprint_m);
-  const PixelBox box = touched_pixels(map, tile);
+  const mercator::PixelBox box = mercator::touched_pixels(map, tile);
   if (!side_m || box.empty()) return std::nullopt;
-  const PixelToGrid ground(map.zone, tile, box);
+  const mercator::PixelToGrid ground(map.zone, tile, box);
   Squares squares(map, *side_m, answer_at);
-  return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
+  return mercator::painted_tile(ground, box, [&](GridPoint point) -> std::optional<mercator::Pixel> {
     const auto answer = squares.at(point);
     return answer ? std::optional(localizability_pixel(*answer, style)) : std::nullopt;
   });

@@ -4,12 +4,12 @@
 // have their middles among those of the finer ones: what was found out once serves every tile.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <vector>
 
-#include "server/api/tile_picture.hpp"
+#include "tiles/mercator/tile_picture.hpp"
 
 namespace roadfix::api {
 
@@ -38,7 +38,8 @@ ZoomRange localizability_zooms(const MapView& map, double footprint_m);
 /// PNG of 256 x 256 pixels: green where it would be a fix, else from red (probability 0) to yellow (1), half
 /// transparent, or grey = probability; nullopt where there is nothing to show. Asks for each square at most once, and
 /// only within the map's extent.
-std::optional<std::vector<std::uint8_t>> localizability_png(const MapView& map, TileAddress tile, double footprint_m,
-                                                            TileStyle style, const AnswerAt& answer_at);
+std::optional<std::vector<std::byte>> localizability_png(const MapView& map, mercator::TileAddress tile,
+                                                         double footprint_m, mercator::TileStyle style,
+                                                         const AnswerAt& answer_at);
 
 }  // namespace roadfix::api

@@ -20,6 +20,7 @@
 #include "server/api/json_parts.hpp"
 #include "server/api/localizability_picture.hpp"
 #include "server/api/route_json.hpp"
+#include "server/api/tile_address.hpp"
 #include "server/api/time_limit.hpp"
 #include "server/handlers/answers.hpp"
 #include "server/handlers/handlers.hpp"
@@ -144,7 +145,7 @@ http::Response post_route(const Service& service, const http::Request& request) 
 struct Layer {
   std::shared_ptr<const ServedMap> map;
   double footprint_m = 0.0;
-  api::TileStyle style = api::TileStyle::kColour;
+  mercator::TileStyle style = mercator::TileStyle::kColour;
 
   std::string key() const { return fmt::format("{}/{}/localizability/{}", map->name(), map->edition(), footprint_m); }
 };
@@ -180,7 +181,7 @@ struct Tiles {
   LruCache<std::string, std::optional<api::PlaceAnswer>> places{kPlacesBytes};
 };
 
-std::string drawn(const Service& service, const http::Request& request, const Layer& layer, api::TileAddress tile,
+std::string drawn(const Service& service, const http::Request& request, const Layer& layer, mercator::TileAddress tile,
                   Tiles& tiles) {
   const auto answer_at = [&](GridPoint place) {
     const std::string key = fmt::format("{}/{}/{}", layer.key(), place.east_m, place.north_m);
@@ -208,7 +209,7 @@ std::string variation(const Service& service, const Layer& layer, const std::str
 
 http::Response get_localizability_tile(const Service& service, const http::Request& request, Tiles& tiles) {
   const auto& at = request.path_parameters;
-  const api::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
+  const mercator::TileAddress tile = api::parse_tile(at.at("z"), at.at("x"), at.at("y"));
   const Layer layer = layer_of(service, request);
   const std::string tag = entity_tag(layer.map->edition(), variation(service, layer, request.path));
   return tile_response(request, tag, [&] { return drawn(service, request, layer, tile, tiles); });

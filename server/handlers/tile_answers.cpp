@@ -21,14 +21,14 @@ GeoBox not_wrapped(GeoBox box) {
 
 }  // namespace
 
-std::string style_query(api::TileStyle style) {
+std::string style_query(mercator::TileStyle style) {
   return style == kTileStyles.front().value ? "" : fmt::format("&style={}", to_string(style));
 }
 
 std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const DrawTile& draw) {
   if (auto kept = pictures.find(key)) return *std::move(kept);
   const auto png = draw();
-  std::string bytes = png ? std::string(png->begin(), png->end()) : std::string();
+  std::string bytes = png ? std::string(reinterpret_cast<const char*>(png->data()), png->size()) : std::string();
   pictures.insert(key, bytes);
   return bytes;
 }

@@ -2,7 +2,7 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
+#include <cstddef>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -11,22 +11,22 @@
 #include <vector>
 
 #include "core/units/words.hpp"
-#include "server/api/tile_picture.hpp"
 #include "server/http/message.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/maps/picture_cache.hpp"
+#include "tiles/mercator/tile_picture.hpp"
 
 namespace roadfix::server {
 
 /// Of the parameter "style", the usual one first.
-inline constexpr std::array<Word<api::TileStyle>, 2> kTileStyles{
-    {{"colour", api::TileStyle::kColour}, {"grey", api::TileStyle::kGrey}}};
-constexpr std::string_view to_string(api::TileStyle style) { return word_of(kTileStyles, style); }
+inline constexpr std::array<Word<mercator::TileStyle>, 2> kTileStyles{
+    {{"colour", mercator::TileStyle::kColour}, {"grey", mercator::TileStyle::kGrey}}};
+constexpr std::string_view to_string(mercator::TileStyle style) { return word_of(kTileStyles, style); }
 /// To ask for it by, behind another parameter: "&style=grey"; empty for the usual one.
-std::string style_query(api::TileStyle style);
+std::string style_query(mercator::TileStyle style);
 
 /// The picture, or nothing where there is nothing to see.
-using DrawTile = std::function<std::optional<std::vector<std::uint8_t>>()>;
+using DrawTile = std::function<std::optional<std::vector<std::byte>>()>;
 /// From the cache, or drawn now and kept; empty where there is nothing to see.
 std::string kept_or_drawn(PictureCache& pictures, const std::string& key, const DrawTile& draw);
 

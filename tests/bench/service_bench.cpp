@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "server/api/web_mercator.hpp"
 #include "server/application.hpp"
 #include "tests/support/map_file.hpp"
 #include "tests/support/street_map.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/mercator/web_mercator.hpp"
 
 namespace roadfix {
 namespace {
@@ -59,7 +59,7 @@ LatLon middle() {
 }
 
 std::vector<std::string> tile_paths() {
-  const api::MercatorPixel pixel = api::mercator_pixel(middle(), kZoom);
+  const mercator::MercatorPixel pixel = mercator::mercator_pixel(middle(), kZoom);
   std::vector<std::string> paths;
   for (int y = -2; y < 2; ++y) {
     for (int x = -2; x < 2; ++x) {

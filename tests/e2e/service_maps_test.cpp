@@ -8,11 +8,11 @@
 
 #include "core/locate/calibration.hpp"
 #include "core/units/error.hpp"
-#include "server/api/web_mercator.hpp"
 #include "tests/e2e/service_fixture.hpp"
 #include "tests/support/eventually.hpp"
 #include "tests/support/sqlite_file.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
+#include "tiles/mercator/web_mercator.hpp"
 
 namespace roadfix {
 namespace {
@@ -151,7 +151,7 @@ TEST(ServiceMaps, DescribesTilesAcrossThe180thMeridianWithinTheBoundsOfTileJson)
   const json centre = testing::json_of(client.Get("/v1/maps/taveuni/tilejson.json"))["center"];
   EXPECT_LE(std::abs(centre[0].get<double>()), 180.0);
   for (const int x : {0, (1 << 15) - 1}) {
-    const int y = static_cast<int>(api::mercator_pixel({centre[1], 180.0}, 15).y / 256);
+    const int y = static_cast<int>(mercator::mercator_pixel({centre[1], 180.0}, 15).y / 256);
     EXPECT_EQ(client.Get(fmt::format("/v1/maps/taveuni/tiles/15/{}/{}.png", x, y))->status, 200) << x;
   }
 }

@@ -4,9 +4,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <regex>
 
-#include "server/api/web_mercator.hpp"
 #include "tests/e2e/served_town.hpp"
 #include "tests/e2e/tile_at.hpp"
+#include "tiles/mercator/web_mercator.hpp"
 
 namespace roadfix {
 namespace {
@@ -87,7 +87,7 @@ TEST_F(Service, ServesWhatPlacesPromiseAsTiles) {
                                ::testing::EndsWith("&footprint_m=500")));
   EXPECT_LT(description["minzoom"], description["maxzoom"]);
   const auto path = [&](int zoom, const std::string& query) {
-    const api::MercatorPixel pixel = api::mercator_pixel(town->place, zoom);
+    const mercator::MercatorPixel pixel = mercator::mercator_pixel(town->place, zoom);
     return "/v1/maps/town/localizability/tiles/" + std::to_string(zoom) + "/" +
            std::to_string(static_cast<int>(pixel.x / 256)) + "/" + std::to_string(static_cast<int>(pixel.y / 256)) +
            ".png" + query;

@@ -3,13 +3,13 @@
 
 #include <string>
 
-#include "server/api/web_mercator.hpp"
+#include "tiles/mercator/web_mercator.hpp"
 
 namespace roadfix::testing {
 
 /// "16/X/Y.png": of zoom 16, below ".../tiles/".
 inline std::string tile_at(LatLon place) {
-  const api::MercatorPixel pixel = api::mercator_pixel(place, 16);
+  const mercator::MercatorPixel pixel = mercator::mercator_pixel(place, 16);
   return "16/" + std::to_string(static_cast<int>(pixel.x / 256)) + "/" +
          std::to_string(static_cast<int>(pixel.y / 256)) + ".png";
 }

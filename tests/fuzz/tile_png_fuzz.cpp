@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 #include "core/png/png_chunk.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_records.hpp"
@@ -25,7 +25,7 @@ std::string with_right_checksums(std::string_view bytes) {
 
 void compare_readers(std::span<const std::byte> bytes, const PngShape& shape) {
   std::vector<std::uint8_t> pixels(shape.bytes());
-  if (!read_grey_png(bytes, shape, pixels)) return;
+  if (!read_plain_png(bytes, shape, pixels)) return;
   PngReader reader(bytes, PngOrigin::kOwn);
   std::vector<std::uint8_t> others(reader.shape().bytes());
   reader.read(others);

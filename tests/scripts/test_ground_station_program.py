@@ -97,7 +97,8 @@ class Positions(unittest.TestCase):
 
     def test_is_fresh(self):
         for packet_format in ("gps_input", "global_position_sensor"):
-            self.assertTrue(self.sent(packet_format, options=self.PATIENT))
+            # On a busy machine the program itself may take longer to start than a message may be old.
+            self.assertTrue(any(self.sent(packet_format, options=self.PATIENT) for _ in range(5)))
 
     def test_is_not_what_was_captured_or_waited_for_long_ago(self):
         for packet_format in ("gps_input", "global_position_sensor"):

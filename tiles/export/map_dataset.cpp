@@ -1,6 +1,7 @@
 #include "tiles/export/map_dataset.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 
 #include "tiles/export/probability_pixel.hpp"
@@ -31,12 +32,25 @@ class MapBand final : public GDALRasterBand {
   }
   GDALColorInterp GetColorInterpretation() override { return colour_; }
 
+  int GetOverviewCount() override { return map_.overviews(); }
+  GDALRasterBand* GetOverview(int index) override {
+    return index < 0 || index >= map_.overviews() ? nullptr : map_.overview(index)->GetRasterBand(nBand);
+  }
+
+  /// So that copies leave the gaps between towns out, however wide they are.
+  int IGetDataCoverageStatus(int x, int y, int width, int height, int, double* percent) override {
+    const bool empty = map_.is_gap(x, y, width, height);
+    if (percent != nullptr) *percent = empty ? 0.0 : 100.0;
+    return empty ? GDAL_DATA_COVERAGE_STATUS_EMPTY : GDAL_DATA_COVERAGE_STATUS_DATA;
+  }
+
   /// GDAL is C below: no exception may leave.
   CPLErr IReadBlock(int col, int row, void* image) override {
     try {
-      const CellArray& cells = map_.block(col, row);
       auto* out = static_cast<Value*>(image);
       std::fill_n(out, kTileCells * kTileCells, pixel(kUnobserved));
+      if (map_.is_gap(col * kTileCells, row * kTileCells, kTileCells, kTileCells)) return CE_None;
+      const CellArray& cells = map_.block(col, row);
       for (int r = 0; r < cells.rows(); ++r) std::ranges::transform(cells.row(r), out + r * kTileCells, pixel);
       return CE_None;
     } catch (const std::exception& error) {
@@ -70,8 +84,13 @@ void describe(GDALDataset& dataset, PixelKind kind, const MapInfo& info) {
   if (!credits.empty()) dataset.SetMetadataItem("TIFFTAG_COPYRIGHT", credits.c_str());
 }
 
-MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind)
+MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind, int overviews)
     : map_(map), geometry_(geometry), reference_(utm_reference(map.info().settings.zone)) {
+  const double finest_m = map.info().settings.cell_m;
+  const int level = std::min(std::ilogb(geometry.cell_m / finest_m), map.info().levels - 1);
+  stored_cell_m_ = std::ldexp(finest_m, level);
+  const auto tiles = map.tiles(level);
+  stored_.insert(tiles.begin(), tiles.end());
   nRasterXSize = geometry.cols;
   nRasterYSize = geometry.rows;
   describe(*this, kind, map.info());
@@ -80,6 +99,10 @@ MapDataset::MapDataset(const MapReader& map, const GridGeometry& geometry, Pixel
   } else {
     SetBand(1, new MapBand<GByte, grey_pixel>(*this, 1, GDT_Byte, GCI_GrayIndex, "probability of road x 254"));
     SetBand(2, new MapBand<GByte, alpha_pixel>(*this, 2, GDT_Byte, GCI_AlphaBand, "observed"));
+  }
+  for (int i = 1; i <= overviews; ++i) {
+    const GridGeometry coarser = GridGeometry::covering(geometry.box(), std::ldexp(geometry.cell_m, i));
+    overviews_.push_back(std::make_unique<MapDataset>(map, coarser, kind));
   }
 }
 
@@ -104,8 +127,15 @@ const CellArray& MapDataset::block(int col, int row) {
   return last_;
 }
 
+bool MapDataset::is_gap(int x, int y, int width, int height) const {
+  const GridGeometry window{geometry_.cell_m, {geometry_.origin.col + x, geometry_.origin.row + y}, width, height};
+  const auto tiles = tiles_covering(GridGeometry::covering(window.box(), stored_cell_m_));
+  return std::ranges::none_of(tiles, [this](TileIndex tile) { return stored_.contains(tile); });
+}
+
 void MapDataset::rethrow_failure() const {
   if (failure_) std::rethrow_exception(failure_);
+  for (const auto& overview : overviews_) overview->rethrow_failure();
 }
 
 }  // namespace roadfix

@@ -3,7 +3,10 @@
 
 #include <gdal_priv.h>
 
+#include <memory>
+#include <set>
 #include <string>
+#include <vector>
 
 #include "tiles/store/map_reader.hpp"
 
@@ -22,14 +25,20 @@ void describe(GDALDataset& dataset, PixelKind kind, const MapInfo& info);
 
 class MapDataset final : public GDALDataset {
  public:
-  /// `map` must outlive it. An exception of the map ends the copy with a GDAL error; rethrow_failure() then throws it.
-  MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind);
+  /// `map` must outlive it. Of so many overviews, each in cells of twice the size, which the map keeps: the geometry
+  /// must lie on the lattice of the coarsest. An exception of the map ends the copy with a GDAL error;
+  /// rethrow_failure() then throws it.
+  MapDataset(const MapReader& map, const GridGeometry& geometry, PixelKind kind, int overviews = 0);
 
   CPLErr GetGeoTransform(double* transform) override;
   const OGRSpatialReference* GetSpatialRef() const override;
 
   /// Cells under a block of 256 x 256 pixels; smaller at the eastern and southern edge.
   const CellArray& block(int col, int row);
+  /// Whether the map has no tile under these pixels.
+  bool is_gap(int x, int y, int width, int height) const;
+  int overviews() const { return static_cast<int>(overviews_.size()); }
+  MapDataset* overview(int index) { return overviews_[static_cast<std::size_t>(index)].get(); }
   void keep_failure() { failure_ = std::current_exception(); }
   void rethrow_failure() const;
 
@@ -37,6 +46,9 @@ class MapDataset final : public GDALDataset {
   const MapReader& map_;
   GridGeometry geometry_;
   OGRSpatialReference reference_;
+  double stored_cell_m_ = 0.0;  ///< of the level of the map that is read
+  std::set<TileIndex> stored_;  ///< its tiles
+  std::vector<std::unique_ptr<MapDataset>> overviews_;
   std::exception_ptr failure_;
   TileIndex last_index_{-1, -1};
   CellArray last_;

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <ios>
 #include <string>
@@ -13,7 +15,6 @@
 #include "core/units/file_beside.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/mbtiles.hpp"
-#include "tiles/export/one_side.hpp"
 #include "tiles/export/side_files.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/store/sqlite.hpp"
@@ -31,34 +32,21 @@ struct Driver {
 
 Driver driver_of(ExportFormat format, const MapInfo& info) {
   CPLStringList options;
-  switch (format) {
-    case ExportFormat::kCog:
-      for (const char* option :
-           {"COMPRESS=DEFLATE", "RESAMPLING=AVERAGE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"}) {
-        options.AddString(option);
-      }
-      return {"COG", PixelKind::kProbability, options};
-    case ExportFormat::kGeoTiff:
-      for (const char* option : {"COMPRESS=DEFLATE", "TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256",
-                                 "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"}) {
-        options.AddString(option);
-      }
-      return {"GTiff", PixelKind::kProbability, options};
-    case ExportFormat::kPng:
-      options.SetNameValue("WORLDFILE", "YES");
-      options.SetNameValue("WRITE_METADATA_AS_TEXT", "YES");
-      options.SetNameValue("DESCRIPTION", description_of(info).c_str());
-      if (const std::string credits = credits_of(info); !credits.empty()) {
-        options.SetNameValue("COPYRIGHT", credits.c_str());
-      }
-      return {"PNG", PixelKind::kPicture, options};
-    case ExportFormat::kMbTiles:
-      break;
+  if (format == ExportFormat::kPng) {
+    options.SetNameValue("WORLDFILE", "YES");
+    options.SetNameValue("WRITE_METADATA_AS_TEXT", "YES");
+    options.SetNameValue("DESCRIPTION", description_of(info).c_str());
+    if (const std::string credits = credits_of(info); !credits.empty()) {
+      options.SetNameValue("COPYRIGHT", credits.c_str());
+    }
+    return {"PNG", PixelKind::kPicture, options};
   }
-  options.SetNameValue("TILE_FORMAT", "PNG");
-  options.SetNameValue("NAME", "road probability");
-  options.SetNameValue("DESCRIPTION", description_of(info).c_str());
-  return {"MBTiles", PixelKind::kPicture, options};
+  for (const char* option : {"COMPRESS=DEFLATE", "SPARSE_OK=TRUE", "BIGTIFF=IF_SAFER", "NUM_THREADS=ALL_CPUS"}) {
+    options.AddString(option);
+  }
+  if (format == ExportFormat::kCog) return {"COG", PixelKind::kProbability, options};
+  for (const char* option : {"TILED=YES", "BLOCKXSIZE=256", "BLOCKYSIZE=256"}) options.AddString(option);
+  return {"GTiff", PixelKind::kProbability, options};
 }
 
 GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
@@ -79,19 +67,33 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
                                  shown_ground(info.settings.zone, info.extent)));
 }
 
+/// Of a COG, each half as large, until one is at most a tile of 512 x 512.
+int overviews_of(GridGeometry geometry) {
+  constexpr int kSmallest = 512;
+  constexpr double kCoarsestM = 4096.0;  // that a map has
+  int count = 0;
+  for (int size = std::max(geometry.cols, geometry.rows); size > kSmallest; size = (size + 1) / 2) ++count;
+  while (std::ldexp(geometry.cell_m, count) > kCoarsestM) --count;
+  return count;
+}
+
+/// Widened to whole cells of its coarsest overview.
+GridGeometry on_lattice_of_overviews(const GridGeometry& geometry) {
+  const double coarsest_m = std::ldexp(geometry.cell_m, overviews_of(geometry));
+  return GridGeometry::covering(GridGeometry::covering(geometry.box(), coarsest_m).box(), geometry.cell_m);
+}
+
 struct Monitor {
   MapDataset& source;
   const OnProgress& progress;
   const std::stop_token& stop;
-  double share_before = 0.0;  ///< of the whole work
-  double share = 1.0;
 };
 
 /// GDAL is C below: no exception may leave.
 int on_progress(double share, const char*, void* monitor) {
   const Monitor& now = *static_cast<const Monitor*>(monitor);
   try {
-    if (now.progress) now.progress(static_cast<std::int64_t>((now.share_before + share * now.share) * 1000.0), 1000);
+    if (now.progress) now.progress(static_cast<std::int64_t>(share * 1000.0), 1000);
   } catch (...) {
     now.source.keep_failure();
     return FALSE;
@@ -146,19 +148,6 @@ class Picture {
   FileBeside reference_;
 };
 
-/// False where GDAL failed or was stopped.
-bool written_by(GDALDriver& driver, const Driver& target, const fs::path& path, Monitor monitor) {
-  constexpr double kCopyShare = 0.7;  // of the time, where zooms follow
-  const bool has_zooms = target.name == std::string_view("MBTiles");
-  if (has_zooms) monitor.share = kCopyShare;
-  const DatasetPtr written(driver.CreateCopy(path.c_str(), &monitor.source, FALSE,
-                                             const_cast<char**>(target.options.List()), on_progress, &monitor));
-  if (written == nullptr || !has_zooms) return written != nullptr;
-  monitor.share_before = kCopyShare;
-  monitor.share = 1.0 - kCopyShare;
-  return add_zooms(*written, on_progress, &monitor);
-}
-
 void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName(kind.name);
   if (driver == nullptr) {
@@ -166,10 +155,12 @@ void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
   }
   const GdalMessages messages;
   CPLErrorReset();
-  const bool copied = written_by(*driver, kind, picture.unfinished(), monitor);
+  const bool copied = DatasetPtr(driver->CreateCopy(picture.unfinished().c_str(), &monitor.source, FALSE,
+                                                    const_cast<char**>(kind.options.List()), on_progress,
+                                                    const_cast<Monitor*>(&monitor))) != nullptr;  // and closed
   monitor.source.rethrow_failure();
   if (monitor.stop.stop_requested()) throw Interrupted("work-stopped", "the export was stopped; nothing was written");
-  if (!copied || CPLGetLastErrorType() >= CE_Failure) {  // of MBTiles, the driver itself gets over some
+  if (!copied || CPLGetLastErrorType() >= CE_Failure) {
     throw IoFailure("export-failed",
                     fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
                                 "has room",
@@ -177,31 +168,38 @@ void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
   }
 }
 
-}  // namespace
-
-void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options, const OnProgress& progress,
-                std::stop_token stop) {
+void copy_with_gdal(const MapReader& map, const GridGeometry& geometry, ExportFormat format, const Picture& picture,
+                    const OnProgress& progress, const std::stop_token& stop) {
   constexpr std::int64_t kLargestPicture = std::int64_t{1} << 29;
-  require_gdal();
-  const Driver driver = driver_of(options.format, map.info());
-  const GridGeometry geometry = geometry_of(map, options);
-  if (options.format == ExportFormat::kPng && std::int64_t{geometry.cols} * geometry.rows > kLargestPicture) {
+  if (format == ExportFormat::kPng && std::int64_t{geometry.cols} * geometry.rows > kLargestPicture) {
     throw LimitExceeded("picture-too-large",
                         fmt::format("{} x {} pixels are too many for a PNG. Export a region or coarser cells",
                                     geometry.cols, geometry.rows));
   }
-  if (options.format == ExportFormat::kMbTiles) require_one_side(map.info().settings.zone, geometry);
+  require_gdal();
+  const Driver driver = driver_of(format, map.info());
+  const bool is_cog = format == ExportFormat::kCog;
+  MapDataset source(map, is_cog ? on_lattice_of_overviews(geometry) : geometry, driver.pixels,
+                    is_cog ? overviews_of(geometry) : 0);
+  copy(driver, picture, {source, progress, stop});
+  if (format == ExportFormat::kPng && !picture.is_whole_png()) {
+    throw IoFailure("export-failed", fmt::format("{}: its end cannot be written. Check that the disk has room",
+                                                 picture.target().string()));
+  }
+}
+
+}  // namespace
+
+void export_map(const MapReader& map, const fs::path& target, const ExportOptions& options, const OnProgress& progress,
+                std::stop_token stop) {
+  const GridGeometry geometry = geometry_of(map, options);
   try {
-    MapDataset source(map, geometry, driver.pixels);
     Picture picture(target);
-    copy(driver, picture, {source, progress, stop});
     if (options.format == ExportFormat::kMbTiles) {
-      complete_metadata(picture.unfinished(), map.info());
+      write_mbtiles(map, geometry, picture.unfinished(), target, progress, stop);
       sqlite::remove_logs(target);
-    }
-    if (options.format == ExportFormat::kPng && !picture.is_whole_png()) {
-      throw IoFailure("export-failed",
-                      fmt::format("{}: its end cannot be written. Check that the disk has room", target.string()));
+    } else {
+      copy_with_gdal(map, geometry, options.format, picture, progress, stop);
     }
     picture.finish();
   } catch (const fs::filesystem_error& error) {

@@ -12,10 +12,12 @@
 namespace roadfix {
 
 enum class ExportFormat {
-  kCog,      ///< cloud-optimised GeoTIFF with overviews: Float32, 0..1, nodata -1
+  /// Cloud-optimised GeoTIFF with the overviews of the map: Float32, 0..1, nodata -1. Widened to whole cells of the
+  /// coarsest of them.
+  kCog,
   kGeoTiff,  ///< tiled GeoTIFF: Float32, 0..1, nodata -1
   kPng,      ///< grey 0..254 and alpha (0 = unobserved), position in a world file
-  kMbTiles,  ///< the same picture in Web Mercator
+  kMbTiles,  ///< the same picture in Web-Mercator tiles
 };
 
 struct ExportOptions {

@@ -4,39 +4,158 @@
 
 #include <algorithm>
 #include <exception>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <thread>
+#include <utility>
 #include <vector>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
+#include "core/units/parallel_for.hpp"
+#include "tiles/export/map_dataset.hpp"
+#include "tiles/mercator/tile_ground.hpp"
+#include "tiles/mercator/tile_picture.hpp"
 #include "tiles/sources/exported_roads.hpp"
 #include "tiles/store/sqlite.hpp"
 
 namespace roadfix {
 namespace {
 
-std::exception_ptr error_of(const std::filesystem::path& file, sqlite::Failure, const std::string& detail) {
-  return std::make_exception_ptr(
-      IoFailure("export-failed",
-                fmt::format("{}: it cannot be written ({}). Check that the disk has room", file.string(), detail)));
+using mercator::TileAddress;
+using TileSet = std::set<TileAddress>;
+
+/// "MPBX", of MBTiles 1.3.
+constexpr const char* kTables = R"(
+  PRAGMA journal_mode = OFF;
+  PRAGMA application_id = 0x4d504258;
+  BEGIN;
+  CREATE TABLE metadata (name TEXT, value TEXT);
+  CREATE TABLE tiles (zoom_level INTEGER, tile_column INTEGER, tile_row INTEGER, tile_data BLOB);
+  CREATE UNIQUE INDEX tile_index ON tiles (zoom_level, tile_column, tile_row);)";
+
+/// The map as if it were no larger than the region, and had no finer cells.
+MapView view_within(const MapReader& map, const GridGeometry& region) {
+  const auto read = [&map, box = region.box()](const GridGeometry& asked) {
+    RoadGrid grid = RoadGrid::unobserved(asked);
+    if (const auto part = asked.intersection(GridGeometry::covering(box, asked.cell_m))) {
+      paste(map.read(*part).cells, grid.cells, part->origin.col - asked.origin.col,
+            part->origin.row - asked.origin.row);
+    }
+    return grid;
+  };
+  const MapInfo& info = map.info();
+  return {{"", info.version}, info.settings.zone, region.cell_m, region.box(), {}, {}, read};
+}
+
+/// The finest ones below which the map has tiles.
+TileSet finest_tiles(const MapReader& map, const MapView& view, int zoom) {
+  TileSet found;
+  for (const TileIndex index : map.tiles(0)) {
+    const GridBox ground = intersection(tile_geometry(index, map.info().settings.cell_m).box(), view.extent);
+    if (ground.empty()) continue;
+    const auto tiles = mercator::tiles_on(view.zone, ground, zoom);
+    found.insert(tiles.begin(), tiles.end());
+  }
+  return found;
+}
+
+/// By zoom, the finest first, down to that with a single one.
+std::vector<TileSet> pyramid_above(TileSet finest) {
+  std::vector<TileSet> zooms{std::move(finest)};
+  while (zooms.back().size() > 1) {
+    TileSet coarser;
+    for (const TileAddress& tile : zooms.back()) coarser.insert({tile.z - 1, tile.x / 2, tile.y / 2});
+    zooms.push_back(std::move(coarser));
+  }
+  return zooms;
+}
+
+class TileFile {
+ public:
+  TileFile(const std::filesystem::path& file, const std::filesystem::path& target)
+      : connection_(file, sqlite::Access::kCreate,
+                    [target](const std::filesystem::path&, sqlite::Failure, const std::string& detail) {
+                      return std::make_exception_ptr(IoFailure(
+                          "export-failed",
+                          fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to "
+                                      "and has room",
+                                      target.string(), detail)));
+                    }) {
+    connection_.execute(kTables);
+    insert_tile_.emplace(connection_, "INSERT INTO tiles VALUES (?1, ?2, ?3, ?4)");
+    insert_metadata_.emplace(connection_, "INSERT INTO metadata VALUES (?1, ?2)");
+  }
+
+  void insert(const TileAddress& tile, const std::vector<std::byte>& png) {
+    const int row = (1 << tile.z) - 1 - tile.y;  // MBTiles count from the south
+    insert_tile_->with(tile.z, tile.x, row, std::span(png)).run();
+  }
+  void insert(const std::string& name, const std::string& value) { insert_metadata_->with(name, value).run(); }
+  void commit() { connection_.execute("COMMIT"); }
+
+ private:
+  sqlite::Connection connection_;
+  std::optional<sqlite::Statement> insert_tile_;
+  std::optional<sqlite::Statement> insert_metadata_;
+};
+
+void write_tiles(const MapView& view, const std::vector<TileSet>& zooms, TileFile& file, const OnProgress& progress,
+                 const std::stop_token& stop) {
+  constexpr std::size_t kAtOnce = 64;
+  std::vector<TileAddress> tiles;
+  for (const TileSet& zoom : zooms) tiles.insert(tiles.end(), zoom.begin(), zoom.end());
+  const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  for (std::size_t begin = 0; begin < tiles.size(); begin += kAtOnce) {
+    const auto part = std::span(tiles).subspan(begin, std::min(kAtOnce, tiles.size() - begin));
+    if (progress) progress(static_cast<std::int64_t>(1000 * begin / tiles.size()), 1000);
+    if (stop.stop_requested()) throw Interrupted("work-stopped", "the export was stopped; nothing was written");
+    std::vector<std::optional<std::vector<std::byte>>> pictures(part.size());
+    parallel_for(static_cast<int>(part.size()), threads, [&](int i) {
+      const auto at = static_cast<std::size_t>(i);
+      pictures[at] = mercator::tile_png(view, part[at], mercator::TileStyle::kGrey);
+    });
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      if (pictures[i]) file.insert(part[i], *pictures[i]);
+    }
+  }
+}
+
+/// All around the Earth where the box lies across the antimeridian, as MBTiles may not.
+std::string bounds_of(const GeoBox& box) {
+  const bool across = box.south_west.lon_deg < -180.0 || box.north_east.lon_deg > 180.0;
+  return fmt::format("{:.7f},{:.7f},{:.7f},{:.7f}", across ? -180.0 : box.south_west.lon_deg, box.south_west.lat_deg,
+                     across ? 180.0 : box.north_east.lon_deg, box.north_east.lat_deg);
+}
+
+void write_metadata(const MapInfo& info, const MapView& view, int coarsest, int finest, TileFile& file) {
+  const LatLon middle = view.zone.unproject(view.extent.centre());
+  file.insert("name", "road probability");
+  file.insert("format", "png");
+  file.insert("type", "overlay");
+  file.insert("version", "1");
+  file.insert("description", description_of(info));
+  file.insert("bounds", bounds_of(geo_box_around(view.zone, view.extent)));
+  file.insert("center", fmt::format("{:.7f},{:.7f},{}", middle.lon_deg, middle.lat_deg, finest));
+  file.insert("minzoom", std::to_string(coarsest));
+  file.insert("maxzoom", std::to_string(finest));
+  for (const auto& [name, value] : provenance_items(provenance_of(info))) file.insert(name, value);
+  if (const std::string credits = credits_of(info); !credits.empty()) file.insert("attribution", credits);
 }
 
 }  // namespace
 
-bool add_zooms(GDALDataset& tiles, GDALProgressFunc progress, void* monitor) {
-  const int pixels = std::max(tiles.GetRasterXSize(), tiles.GetRasterYSize());
-  std::vector<int> factors;
-  for (int factor = 2; pixels > factor / 2 * kTileCells; factor *= 2) factors.push_back(factor);
-  if (factors.empty()) return true;
-  return tiles.BuildOverviews("AVERAGE", static_cast<int>(factors.size()), factors.data(), 0, nullptr, progress,
-                              monitor, nullptr) == CE_None;
-}
-
-void complete_metadata(const std::filesystem::path& tiles, const MapInfo& info) {
-  sqlite::Connection connection(tiles, sqlite::Access::kReadWrite, error_of);
-  connection.execute("UPDATE metadata SET value = (SELECT min(zoom_level) FROM tiles) WHERE name = 'minzoom'");
-  auto items = provenance_items(provenance_of(info));
-  if (const std::string credits = credits_of(info); !credits.empty()) items.emplace_back("attribution", credits);
-  sqlite::Statement insert(connection, "INSERT INTO metadata (name, value) VALUES (?1, ?2)");
-  for (const auto& [name, value] : items) insert.with(name, value).run();
+void write_mbtiles(const MapReader& map, const GridGeometry& region, const std::filesystem::path& file,
+                   const std::filesystem::path& target, const OnProgress& progress, const std::stop_token& stop) {
+  TileFile tiles(file, target);
+  const MapView view = view_within(map, region);
+  const int finest = mercator::native_zoom(view);
+  const std::vector<TileSet> zooms = pyramid_above(finest_tiles(map, view, finest));
+  write_tiles(view, zooms, tiles, progress, stop);
+  write_metadata(map.info(), view, finest + 1 - static_cast<int>(zooms.size()), finest, tiles);
+  tiles.commit();
 }
 
 }  // namespace roadfix

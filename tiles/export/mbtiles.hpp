@@ -1,20 +1,20 @@
-// What GDAL leaves out of the MBTiles that it copies. Not for other modules.
+// A region of a map as MBTiles 1.3: the pictures of its Web-Mercator tiles, as the service draws them. Not for other
+// modules.
 #pragma once
 
-#include <gdal_priv.h>
-
 #include <filesystem>
+#include <stop_token>
 
-#include "tiles/store/map_records.hpp"
+#include "core/units/progress.hpp"
+#include "tiles/store/map_reader.hpp"
 
 namespace roadfix {
 
-/// Zooms below that of the tiles, down to the one that shows all of it in one: without them a viewer shows nothing
-/// unless it is close. Returns false where GDAL failed or `progress` said to stop.
-bool add_zooms(GDALDataset& tiles, GDALProgressFunc progress, void* monitor);
-
-/// Of the metadata (MBTiles 1.3) "minzoom", which GDAL gives as 0 whatever there is, "attribution", unless empty, and
-/// what ingest reads back. Throws IoFailure ("export-failed").
-void complete_metadata(const std::filesystem::path& tiles, const MapInfo& info);
+/// Writes `file`, which does not exist yet and is to take the place of `target`. Its zooms go from the one where a
+/// pixel is about a cell of the region down to the one where a single tile shows all of it: without the coarse ones a
+/// viewer shows nothing unless it is close. Where nothing was observed there is no tile. Throws Interrupted
+/// ("work-stopped") or IoFailure ("export-failed"), which names `target`. `progress` counts thousandths.
+void write_mbtiles(const MapReader& map, const GridGeometry& region, const std::filesystem::path& file,
+                   const std::filesystem::path& target, const OnProgress& progress, const std::stop_token& stop);
 
 }  // namespace roadfix

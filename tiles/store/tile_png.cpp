@@ -10,7 +10,7 @@
 #include <mutex>
 #include <utility>
 
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 #include "core/png/png_reader.hpp"
 #include "core/units/error.hpp"
 #include "tiles/store/map_records.hpp"
@@ -42,7 +42,7 @@ void unpack(std::span<const std::uint8_t> pixels, std::span<Cell> cells) {
 }
 
 void read_pixels(std::span<const std::byte> png, const PngShape& shape, std::span<std::uint8_t> pixels) {
-  if (read_grey_png(png, shape, pixels)) return;
+  if (read_plain_png(png, shape, pixels)) return;
   try {
     PngReader reader(png, PngOrigin::kOwn);
     if (reader.shape() != shape) {
@@ -55,8 +55,8 @@ void read_pixels(std::span<const std::byte> png, const PngShape& shape, std::spa
 }
 
 std::vector<std::byte> encoded(const CellArray& cells, TileDepth depth) {
-  if (depth == TileDepth::kEvidence) return encode_grey_png(cells.cells(), shape_of(depth));
-  return encode_grey_png(pack(cells.cells()), shape_of(depth));
+  if (depth == TileDepth::kEvidence) return encode_plain_png(cells.cells(), shape_of(depth));
+  return encode_plain_png(pack(cells.cells()), shape_of(depth));
 }
 
 /// For cells that are all alike, as up to half of the tiles of a map drawn from road data are.
@@ -97,7 +97,7 @@ std::vector<std::byte> encode_heights(std::span<const std::uint16_t> codes) {
     pixels[2 * i] = static_cast<std::uint8_t>(codes[i] >> 8);
     pixels[2 * i + 1] = static_cast<std::uint8_t>(codes[i] & 0xff);
   }
-  return encode_grey_png(pixels, kHeights);
+  return encode_plain_png(pixels, kHeights);
 }
 
 std::vector<std::uint16_t> decode_heights(std::span<const std::byte> png) {

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 
@@ -35,7 +35,7 @@ std::vector<std::byte> as_bytes(std::initializer_list<int> values) {
 
 TEST(PngReader, SixteenBitsFromOutsideAreNumbersOfThisProcessor) {
   const PngShape shape{2, 1, 1, 16};
-  const auto png = encode_grey_png(std::vector<std::uint8_t>{0x12, 0x34, 0xab, 0xcd}, shape);
+  const auto png = encode_plain_png(std::vector<std::uint8_t>{0x12, 0x34, 0xab, 0xcd}, shape);
   const auto pixels = decoded(png, PngOrigin::kOutside);
   const auto* numbers = reinterpret_cast<const std::uint16_t*>(pixels.data());
   EXPECT_THAT(std::span(numbers, 2), ::testing::ElementsAre(0x1234, 0xabcd));
@@ -43,7 +43,7 @@ TEST(PngReader, SixteenBitsFromOutsideAreNumbersOfThisProcessor) {
 
 TEST(PngReader, TheShapeIsKnownBeforeAnyPixelIsThere) {
   const PngShape shape{100, 80, 1, 8};
-  const auto png = encode_grey_png(noise(shape), shape);
+  const auto png = encode_plain_png(noise(shape), shape);
   constexpr std::size_t kHeaderEnd = 33 + 8;  // and the name of the chunk of pixels
   PngReader reader({png.data(), kHeaderEnd}, PngOrigin::kOwn);
   EXPECT_EQ(reader.shape(), shape);
@@ -65,7 +65,7 @@ TEST(PngReader, WhatItWouldNotWriteIsNotItsOwn) {
 
 TEST(PngReader, BytesAfterTheEndArePassedOverFromOutsideAlone) {
   const PngShape shape{4, 4, 1, 8};
-  auto png = encode_grey_png(noise(shape), shape);
+  auto png = encode_plain_png(noise(shape), shape);
   png.push_back(std::byte{0});
   EXPECT_EQ(decoded(png, PngOrigin::kOutside), noise(shape));
   EXPECT_EQ(code_of([&] { decoded(png, PngOrigin::kOwn); }), "png-damaged");

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <utility>
+
+#include "tests/support/decoded_png.hpp"
 
 namespace roadfix::api {
 namespace {
@@ -18,18 +19,18 @@ MapView wide_map() {
   return {{"city", "v1"}, *UtmZone::from_epsg(32637), 2.0, {{496'000, 100'000}, {504'000, 108'000}}, {}, {}, {}};
 }
 
-TileAddress tile_of(const MapView& map, GridPoint at, int zoom) {
-  const MercatorPixel p = mercator_pixel(map.zone.unproject(at), zoom);
-  return {zoom, static_cast<int>(p.x / kTilePixels), static_cast<int>(p.y / kTilePixels)};
+mercator::TileAddress tile_of(const MapView& map, GridPoint at, int zoom) {
+  const mercator::MercatorPixel p = mercator::mercator_pixel(map.zone.unproject(at), zoom);
+  return {zoom, static_cast<int>(p.x / mercator::kTilePixels), static_cast<int>(p.y / mercator::kTilePixels)};
 }
 
 constexpr PlaceAnswer kFix{true, 1.0};
 
 using Places = std::set<std::pair<double, double>>;
 
-Places places_of(const MapView& map, TileAddress tile) {
+Places places_of(const MapView& map, mercator::TileAddress tile) {
   Places places;
-  localizability_png(map, tile, kFootprintM, TileStyle::kColour, [&](GridPoint place) {
+  localizability_png(map, tile, kFootprintM, mercator::TileStyle::kColour, [&](GridPoint place) {
     EXPECT_TRUE(places.emplace(place.east_m, place.north_m).second) << "asked for twice";
     return std::optional(kFix);
   });
@@ -58,7 +59,7 @@ TEST(LocalizabilityPicture, DrawsNothingWhereAPlaceWouldSpeakForTooMuchGround) {
 
 TEST(LocalizabilityPicture, FindsThePlacesOfACoarseZoomAmongThoseOfAFineOne) {
   const MapView map = wide_map();
-  const TileAddress coarse = tile_of(map, {500'100, 104'100}, 14);
+  const mercator::TileAddress coarse = tile_of(map, {500'100, 104'100}, 14);
   Places fine;
   for (const int dx : {-1, 0, 1, 2}) {
     for (const int dy : {-1, 0, 1, 2}) fine.merge(places_of(map, {15, 2 * coarse.x + dx, 2 * coarse.y + dy}));
@@ -71,32 +72,32 @@ TEST(LocalizabilityPicture, FindsThePlacesOfACoarseZoomAmongThoseOfAFineOne) {
 TEST(LocalizabilityPicture, LeavesOutWhatIsOffTheMapAndWhatCannotBeSaid) {
   const MapView map = wide_map();
   const auto east_only = [](GridPoint place) { return place.east_m > 496'500 ? std::optional(kFix) : std::nullopt; };
-  const TileAddress corner = tile_of(map, {497'000, 100'200}, 15);
-  const auto png = localizability_png(map, corner, kFootprintM, TileStyle::kGrey, east_only);
+  const mercator::TileAddress corner = tile_of(map, {497'000, 100'200}, 15);
+  const auto png = localizability_png(map, corner, kFootprintM, mercator::TileStyle::kGrey, east_only);
   ASSERT_TRUE(png);
-  const cv::Mat picture = cv::imdecode(*png, cv::IMREAD_UNCHANGED);
-  ASSERT_EQ(picture.size(), cv::Size(kTilePixels, kTilePixels));
-  for (int y = 0; y < kTilePixels; ++y) {
-    for (int x = 0; x < kTilePixels; ++x) {
+  const cv::Mat picture = testing::decoded_png(*png);
+  ASSERT_EQ(picture.size(), cv::Size(mercator::kTilePixels, mercator::kTilePixels));
+  for (int y = 0; y < mercator::kTilePixels; ++y) {
+    for (int x = 0; x < mercator::kTilePixels; ++x) {
       if (picture.at<cv::Vec4b>(y, x)[3] == 0) continue;
-      const GridPoint ground =
-          map.zone.project(lat_lon({kTilePixels * corner.x + x + 0.5, kTilePixels * corner.y + y + 0.5}, corner.z));
+      const GridPoint ground = map.zone.project(mercator::lat_lon(
+          {mercator::kTilePixels * corner.x + x + 0.5, mercator::kTilePixels * corner.y + y + 0.5}, corner.z));
       EXPECT_GT(ground.east_m, 496'500 - 0.5 * 400.0);
       EXPECT_GT(ground.north_m, 100'000 - 1.0);
-      EXPECT_EQ(picture.at<cv::Vec4b>(y, x)[0], 255);
+      ASSERT_EQ(picture.at<cv::Vec4b>(y, x)[0], 255);
     }
   }
-  EXPECT_FALSE(localizability_png(map, corner, kFootprintM, TileStyle::kGrey,
+  EXPECT_FALSE(localizability_png(map, corner, kFootprintM, mercator::TileStyle::kGrey,
                                   [](GridPoint) { return std::optional<PlaceAnswer>(); }));
-  EXPECT_FALSE(localizability_png(map, {15, 0, 0}, kFootprintM, TileStyle::kGrey, east_only));
+  EXPECT_FALSE(localizability_png(map, {15, 0, 0}, kFootprintM, mercator::TileStyle::kGrey, east_only));
 }
 
 TEST(LocalizabilityPicture, IsGreenForAFixAloneAndAtMostYellowBelow) {
   const MapView map = wide_map();
   const auto colour_of = [&](PlaceAnswer answer) {
-    const auto png = localizability_png(map, tile_of(map, {500'100, 104'100}, 17), kFootprintM, TileStyle::kColour,
-                                        [&](GridPoint) { return std::optional(answer); });
-    return cv::imdecode(*png, cv::IMREAD_UNCHANGED).at<cv::Vec4b>(100, 100);
+    const auto png = localizability_png(map, tile_of(map, {500'100, 104'100}, 17), kFootprintM,
+                                        mercator::TileStyle::kColour, [&](GridPoint) { return std::optional(answer); });
+    return testing::decoded_png(*png).at<cv::Vec4b>(100, 100);
   };
   const cv::Vec4b red(37, 48, 217, 128);
   const cv::Vec4b yellow(93, 201, 244, 128);

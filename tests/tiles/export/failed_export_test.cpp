@@ -56,7 +56,7 @@ TEST_F(MapExport, SaysWhenTheLastByteFindsNoRoomAndLeavesNothingBehind) {
 
 TEST_F(MapExport, ADamagedTileEndsTheExportAndIsNamed) {
   testing::open_sqlite(path).execute("UPDATE road_probability SET tile_data = x'00'");
-  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng}) {
+  for (const auto format : {ExportFormat::kCog, ExportFormat::kPng, ExportFormat::kMbTiles}) {
     EXPECT_EQ(code_of(folder / "out", {.format = format}), "tile-corrupt");
   }
   EXPECT_EQ(files(), 1U);

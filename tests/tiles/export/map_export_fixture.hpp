@@ -7,12 +7,28 @@
 #include <filesystem>
 #include <iterator>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/support/code_of.hpp"
 #include "tests/tiles/store/map_fixture.hpp"
 #include "tiles/export/map_export.hpp"
 
 namespace roadfix::testing {
+
+/// A map whose blocks hold one value each.
+inline void ingest_plain(const std::filesystem::path& path, const MapSettings& settings,
+                         const std::vector<std::pair<TileIndex, Cell>>& of) {
+  MapWriter writer(path, settings);
+  std::vector<TileIndex> blocks;
+  for (const auto& [block, value] : of) blocks.push_back(block);
+  const auto record = TestSource{"a", 1, blocks}.record();
+  writer.begin_source(record, blocks, false);
+  for (const auto& [block, value] : of) {
+    put_block(writer, "a", block, CellArray(kTileCells, kTileCells, value));
+  }
+  writer.finish_source("a");
+}
 
 class MapExport : public ::testing::Test {
  protected:

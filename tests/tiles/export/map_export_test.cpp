@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <memory>
-#include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
 
-#include "core/geodesy/geo_box.hpp"
 #include "core/units/error.hpp"
 #include "tests/tiles/export/map_export_fixture.hpp"
 #include "tiles/sources/exported_roads.hpp"
@@ -22,7 +22,7 @@ namespace roadfix {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ingest;
+using testing::ingest_plain;
 using testing::MapExport;
 using testing::settings_37n;
 using testing::some_blocks;
@@ -71,6 +71,39 @@ TEST_F(MapExport, GeoTiffsHoldTheProbabilitiesInPlace) {
     expect_probabilities(Picture(target), whole);
   }
   EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(MapExport, CogsHaveTheOverviewsOfTheMap) {
+  constexpr int kTiles = 5;
+  {
+    MapWriter writer(folder / "large.gpkg", settings_37n());
+    testing::ingest(writer, {"a", 1, some_blocks(kTiles)});
+  }
+  const MapReader map(folder / "large.gpkg");
+  export_map(map, folder / "out.tif", {.format = ExportFormat::kCog});
+  const Picture picture(folder / "out.tif");
+  GDALRasterBand& band = *picture.data->GetRasterBand(1);
+  ASSERT_EQ(band.GetOverviewCount(), 2) << "1280, 640 and 320 pixels";
+  std::array<double, 6> transform{};
+  picture.data->GetGeoTransform(transform.data());
+  for (int i = 0; i < 2; ++i) {
+    GDALRasterBand& overview = *band.GetOverview(i);
+    const double cell_m = std::ldexp(2.0, i + 1);
+    const GridPoint north_west{transform[0], transform[3]};
+    ASSERT_EQ(std::fmod(north_west.east_m, cell_m), 0.0);
+    ASSERT_EQ(std::fmod(north_west.north_m, cell_m), 0.0);
+    const GridGeometry whole{cell_m, lattice_index(north_west, cell_m), overview.GetXSize(), overview.GetYSize()};
+    std::vector<float> values(static_cast<std::size_t>(whole.cols) * static_cast<std::size_t>(whole.rows));
+    ASSERT_EQ(overview.RasterIO(GF_Read, 0, 0, whole.cols, whole.rows, values.data(), whole.cols, whole.rows,
+                                GDT_Float32, 0, 0),
+              CE_None);
+    const RoadGrid expected = map.read(whole);
+    ASSERT_GT(expected.cells.observed_count(), values.size() / 2);
+    for (std::size_t k = 0; k < values.size(); ++k) {
+      const Cell cell = expected.cells.cells()[k];
+      ASSERT_NEAR(values[k], is_observed(cell) ? probability(cell) : -1.0, 1e-6) << k;
+    }
+  }
 }
 
 TEST_F(MapExport, ARegionInCoarserCellsIsThatOfTheOverview) {
@@ -126,86 +159,25 @@ TEST_F(MapExport, APictureLiesWhereItsMapDoesWhereverTheOneBeforeLay) {
   EXPECT_TRUE(fs::exists(folder / "out.wld")) << "of the PNG beside it";
 }
 
-TEST_F(MapExport, MbTilesTakeNothingFromTheFileThatTheyReplace) {
-  const auto target = folder / "out.mbtiles";
-  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
-  {
-    sqlite::Connection killed = testing::open_sqlite(target);
-    killed.execute("UPDATE tiles SET tile_data = 'of before'");
-    killed.execute("PRAGMA cache_size = 1; BEGIN; UPDATE tiles SET tile_data = zeroblob(50000)");
-    fs::copy_file(target.string() + "-journal", folder / "journal");
+TEST_F(MapExport, LeavesTheGapBetweenDistantTownsOut) {
+  const TileIndex here = some_blocks(1).front();
+  const TileIndex there{here.col + 100, here.row + 100};  // 72 km off: 25,600 x 25,600 cells
+  ingest_plain(folder / "two.gpkg", settings_37n(), {{here, 40}, {there, 80}});
+  for (const auto& [name, format, most_bytes] : {std::tuple("cog.tif", ExportFormat::kCog, 300'000U),
+                                                 {"plain.tif", ExportFormat::kGeoTiff, 300'000U},
+                                                 {"out.mbtiles", ExportFormat::kMbTiles, 100'000U}}) {
+    export_map(MapReader(folder / "two.gpkg"), folder / name, {.format = format});
+    EXPECT_LT(fs::file_size(folder / name), most_bytes) << name;
   }
-  fs::rename(folder / "journal", target.string() + "-journal");
-  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
-  sqlite::Connection file = testing::open_sqlite(target);
-  EXPECT_EQ(sqlite::number(file, "SELECT count(*) FROM tiles WHERE tile_data = 'of before'"), 0);
-  EXPECT_EQ(files(), 2U);
-}
-
-TEST_F(MapExport, MbTilesCoverTheMapAtAllZooms) {
-  const auto target = folder / "out.mbtiles";
-  export_map(MapReader(path), target, {.format = ExportFormat::kMbTiles});
-  const Picture picture(target);
-  EXPECT_STREQ(picture.data->GetSpatialRef()->GetAuthorityCode(nullptr), "3857");
-  EXPECT_EQ(picture.data->GetRasterCount(), 4);
-  EXPECT_EQ(files(), 2U);
-  GDALRasterBand& band = *picture.data->GetRasterBand(1);
-  ASSERT_GE(band.GetOverviewCount(), 1);
-  GDALRasterBand& smallest = *band.GetOverview(band.GetOverviewCount() - 1);
-  EXPECT_LE(std::max(smallest.GetXSize(), smallest.GetYSize()), 256);
-  const auto zoom = [&](const char* name) { return std::stoi(picture.data->GetMetadataItem(name)); };
-  EXPECT_EQ(zoom("minzoom"), zoom("maxzoom") - band.GetOverviewCount());
-}
-
-/// Of numbers "W,S,E,N" behind the n-th "--bbox " of a text.
-GeoBox proposed_box(const std::string& text, int number) {
-  std::size_t at = 0;
-  for (int i = 0; i <= number; ++i) at = text.find("--bbox ", at) + 7;
-  GeoBox box;
-  EXPECT_EQ(std::sscanf(text.c_str() + at, "%lf,%lf,%lf,%lf", &box.south_west.lon_deg, &box.south_west.lat_deg,
-                        &box.north_east.lon_deg, &box.north_east.lat_deg),
-            4);
-  return box;
-}
-
-TEST_F(MapExport, MbTilesOnBothSidesOf180DegreesAreRefusedAndEitherSideIsNot) {
-  for (const int epsg : {32701, 32760}) {  // of Fiji: a map of either zone
-    const UtmZone zone = *UtmZone::from_epsg(epsg);
-    const fs::path across = folder / fmt::format("{}.gpkg", epsg);
-    {
-      const GridPoint at = zone.project({-16.8, 180.0});
-      const auto block = [](double metres) { return static_cast<int>(std::floor(metres / 512.0)); };
-      MapWriter writer(across, {zone, 2.0});
-      testing::TestSource source{"a", 1, {}};
-      for (const int east : {-1, 0, 1}) {
-        source.blocks.push_back({block(at.east_m) + east, -block(at.north_m)});
-      }
-      ingest(writer, source);
-    }
-    const MapReader map(across);
-    const fs::path target = folder / "out.mbtiles";
-    std::string text;
-    try {
-      export_map(map, target, {.format = ExportFormat::kMbTiles});
-    } catch (const InvalidInput& error) {
-      EXPECT_EQ(error.code(), "region-across-antimeridian");
-      text = error.what();
-    }
-    ASSERT_FALSE(text.empty());
-    for (const int side : {0, 1}) {
-      const GridBox box = grid_box_around(zone, proposed_box(text, side), map.info().extent);
-      export_map(map, target, {.format = ExportFormat::kMbTiles, .box = box});
-      EXPECT_GT(box.width_m(), 400.0) << text;
-      EXPECT_LT(Picture(target).cols(), 2048) << text;
-    }
-    const double between_deg =
-        proposed_box(text, 1).south_west.lon_deg + 360.0 - proposed_box(text, 0).north_east.lon_deg;
-    const double between_m = between_deg * 111'320.0 * std::cos(16.8 / 180.0 * std::numbers::pi);
-    double said_m = 0.0;
-    EXPECT_EQ(std::sscanf(text.c_str() + text.find("a strip of"), "a strip of %lf m", &said_m), 1) << text;
-    EXPECT_NEAR(said_m, between_m, 1.0);
-    EXPECT_EQ(code_of(folder / "out.tif", {}), "no error");
-  }
+  const Picture picture(folder / "cog.tif");
+  const auto value = [&](int at) {
+    float read = 0.0F;
+    EXPECT_EQ(picture.data->GetRasterBand(1)->RasterIO(GF_Read, at, at, 1, 1, &read, 1, 1, GDT_Float32, 0, 0), CE_None);
+    return read;
+  };
+  EXPECT_FLOAT_EQ(value(100), 40.0F / 254.0F);
+  EXPECT_FLOAT_EQ(value(12'000), -1.0F);
+  EXPECT_FLOAT_EQ(value(25'700), 80.0F / 254.0F);
 }
 
 TEST_F(MapExport, SaysWhoseTheContentIs) {

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/png_of_rows.hpp"
@@ -89,7 +89,7 @@ TEST(TilePngDamage, ValuesOfAFusedTileThatAreNoProbabilityAreRefused) {
     std::vector<std::uint8_t> pixels(std::size_t{2} * kTileCells * kTileCells);
     pixels[0] = static_cast<std::uint8_t>(value >> 8U);
     pixels[1] = static_cast<std::uint8_t>(value & 0xffU);
-    const auto png = encode_grey_png(pixels, {kTileCells, kTileCells, 1, 16});
+    const auto png = encode_plain_png(pixels, {kTileCells, kTileCells, 1, 16});
     return testing::code_of([&] { decode_tile(png, TileDepth::kFused); });
   };
   for (const unsigned value : {0U, 254U, 65535U}) EXPECT_EQ(code_of_value(value), "no error") << value;

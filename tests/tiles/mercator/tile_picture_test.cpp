@@ -1,14 +1,12 @@
-#include "server/api/tile_picture.hpp"
+#include "tiles/mercator/tile_picture.hpp"
 
 #include <gtest/gtest.h>
 
-#include <opencv2/imgcodecs.hpp>
-
 #include "core/grid/resample.hpp"
-#include "core/units/error.hpp"
-#include "server/api/tile_ground.hpp"
+#include "tests/support/decoded_png.hpp"
+#include "tiles/mercator/tile_ground.hpp"
 
-namespace roadfix::api {
+namespace roadfix::mercator {
 namespace {
 
 /// A square of 1 km: roads where (col + row) of the 2 m lattice makes broad diagonal stripes, its west unobserved.
@@ -40,8 +38,6 @@ TileAddress tile_of(LatLon at, int zoom) {
   return {zoom, static_cast<int>(p.x / kTilePixels), static_cast<int>(p.y / kTilePixels)};
 }
 
-cv::Mat decoded(const std::vector<std::uint8_t>& png) { return cv::imdecode(png, cv::IMREAD_UNCHANGED); }
-
 TEST(WebMercator, GivesPublishedTileNumbers) {
   // OpenStreetMap wiki, "Slippy map tilenames": the Brandenburg Gate.
   const TileAddress tile = tile_of({52.516275, 13.377704}, 17);
@@ -70,29 +66,13 @@ TEST(TouchedPixels, OfAMapAcrossTheAntimeridianLieOnBothSides) {
   EXPECT_NO_THROW(PixelToGrid(fiji, world, touched_pixels(map, world)));
 }
 
-TEST(WebMercator, RefusesWhatIsNoTile) {
-  EXPECT_NO_THROW(parse_tile("0", "0", "0"));
-  EXPECT_NO_THROW(parse_tile("24", "16777215", "0"));
-  for (const auto& [z, x, y] : {std::tuple{"25", "0", "0"},
-                                {"1", "2", "0"},
-                                {"1", "0", "-1"},
-                                {"a", "0", "0"},
-                                {"1", "0 ", "0"},
-                                {"1", "01", "0"},
-                                {"00", "0", "0"},
-                                {"1", "-0", "0"},
-                                {"", "0", "0"}}) {
-    EXPECT_THROW(parse_tile(z, x, y), NotFound);
-  }
-}
-
 TEST(TilePicture, ShowsEveryPixelWhatTheExactProjectionFindsThere) {
   const MapView map = striped_map();
   const LatLon centre = map.zone.unproject({434500.0, 4179500.0});
   const TileAddress tile = tile_of(centre, 18);
   const auto png = tile_png(map, tile, TileStyle::kGrey);
   ASSERT_TRUE(png);
-  const cv::Mat picture = decoded(*png);
+  const cv::Mat picture = testing::decoded_png(*png);
   ASSERT_EQ(picture.size(), cv::Size(256, 256));
   const GridGeometry whole{2.0, {217000, -2090000}, 500, 500};
   int wrong = 0;
@@ -129,4 +109,4 @@ TEST(TilePicture, CanBeRenderedAtEveryZoom) {
 }
 
 }  // namespace
-}  // namespace roadfix::api
+}  // namespace roadfix::mercator

@@ -1,11 +1,11 @@
-#include "server/api/tile_ground.hpp"
+#include "tiles/mercator/tile_ground.hpp"
 
 #include <algorithm>
 #include <cmath>
 
 #include "core/geodesy/geo_box.hpp"
 
-namespace roadfix::api {
+namespace roadfix::mercator {
 namespace {
 
 constexpr int kLongestStep = 16;
@@ -23,6 +23,21 @@ PixelBox pixels_of(const GeoBox& bounds, TileAddress tile, double turn_deg) {
 }
 
 }  // namespace
+
+std::vector<TileAddress> tiles_on(const UtmZone& zone, const GridBox& box, int zoom) {
+  const GeoBox bounds = geo_box_around(zone, box);
+  const MercatorPixel north_west = mercator_pixel({bounds.north_east.lat_deg, bounds.south_west.lon_deg}, zoom);
+  const MercatorPixel south_east = mercator_pixel({bounds.south_west.lat_deg, bounds.north_east.lon_deg}, zoom);
+  const auto tile_of = [](double pixel) { return static_cast<int>(std::floor(pixel / kTilePixels)); };
+  const int across = 1 << zoom;
+  std::vector<TileAddress> tiles;
+  for (int y = std::max(0, tile_of(north_west.y)); y <= std::min(across - 1, tile_of(south_east.y)); ++y) {
+    for (int x = tile_of(north_west.x); x <= tile_of(south_east.x); ++x) {
+      tiles.push_back({zoom, (x % across + across) % across, y});  // beyond the antimeridian it begins anew
+    }
+  }
+  return tiles;
+}
 
 PixelBox touched_pixels(const MapView& map, TileAddress tile) {
   const GeoBox bounds = geo_box_around(map.zone, map.extent);
@@ -52,14 +67,17 @@ GridPoint PixelToGrid::at(int x, int y) const {
   const int j = (y - box_.top) / step_;
   const double u = static_cast<double>(x - box_.left - i * step_) / step_;
   const double v = static_cast<double>(y - box_.top - j * step_) / step_;
-  const auto blend = [&](double GridPoint::*axis) {
-    const double top = (1.0 - u) * (node(i, j).*axis) + u * (node(i + 1, j).*axis);
-    const double bottom = (1.0 - u) * (node(i, j + 1).*axis) + u * (node(i + 1, j + 1).*axis);
-    return (1.0 - v) * top + v * bottom;
+  const GridPoint& north_west = node(i, j);
+  const GridPoint& north_east = node(i + 1, j);
+  const GridPoint& south_west = node(i, j + 1);
+  const GridPoint& south_east = node(i + 1, j + 1);
+  const auto blend = [u, v](double nw, double ne, double sw, double se) {
+    return (1.0 - v) * ((1.0 - u) * nw + u * ne) + v * ((1.0 - u) * sw + u * se);
   };
-  return {blend(&GridPoint::east_m), blend(&GridPoint::north_m)};
+  return {blend(north_west.east_m, north_east.east_m, south_west.east_m, south_east.east_m),
+          blend(north_west.north_m, north_east.north_m, south_west.north_m, south_east.north_m)};
 }
 
 GridBox PixelToGrid::box() const { return box_around(points_); }
 
-}  // namespace roadfix::api
+}  // namespace roadfix::mercator

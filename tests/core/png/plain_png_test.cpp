@@ -1,4 +1,4 @@
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,11 +9,13 @@
 
 #include "core/png/png_chunk.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/decoded_png.hpp"
 #include "tests/support/png_of_rows.hpp"
 
 namespace roadfix {
 namespace {
 
+using ::testing::ElementsAre;
 using ::testing::Optional;
 using testing::packed_by_zlib;
 using testing::png_of_chunks;
@@ -45,7 +47,7 @@ std::string filtered(std::initializer_list<char> types) {
 
 std::optional<Pixels> read_fast(std::span<const std::byte> png, const PngShape& shape = kShape) {
   Pixels pixels(shape.bytes(), 7);
-  return read_grey_png(png, shape, pixels) ? std::optional(pixels) : std::nullopt;
+  return read_plain_png(png, shape, pixels) ? std::optional(pixels) : std::nullopt;
 }
 
 /// By libpng. nullopt where it refuses.
@@ -60,17 +62,36 @@ std::optional<Pixels> read_otherwise(std::span<const std::byte> png) {
   }
 }
 
-TEST(GreyPng, ComesBackAsItWasAlsoByLibpng) {
+TEST(PlainPng, ComesBackAsItWasAlsoByLibpng) {
   for (const PngShape& shape :
        {PngShape{1, 1, 1, 8}, PngShape{7, 3, 1, 8}, PngShape{5, 64, 1, 16}, PngShape{300, 300, 1, 16}}) {
-    const auto png = encode_grey_png(random_pixels(shape), shape);
+    const auto png = encode_plain_png(random_pixels(shape), shape);
     EXPECT_THAT(read_fast(png, shape), Optional(random_pixels(shape)));
     EXPECT_THAT(read_otherwise(png), Optional(random_pixels(shape)));
-    EXPECT_EQ(encode_grey_png(random_pixels(shape), shape), png);
+    EXPECT_EQ(encode_plain_png(random_pixels(shape), shape), png);
   }
 }
 
-TEST(GreyPng, DifferencesFromTheRowAboveAreReadAsLibpngReadsThem) {
+TEST(PlainPng, WithAlphaOrColoursIsThatOfOtherPrograms) {
+  for (const int channels : {2, 3, 4}) {
+    const PngShape shape{7, 3, channels, 8};
+    const Pixels pixels = random_pixels(shape);
+    const cv::Mat picture = testing::decoded_png(encode_plain_png(pixels, shape));
+    ASSERT_EQ(picture.size(), cv::Size(7, 3));
+    ASSERT_EQ(picture.channels(), channels == 2 ? 4 : channels) << "OpenCV repeats the grey";
+    for (int i = 0; i < 21; ++i) {
+      const auto* const read = picture.ptr<std::uint8_t>(i / 7, i % 7);  // blue, green, red, alpha
+      const std::uint8_t* const written = pixels.data() + static_cast<std::ptrdiff_t>(i) * channels;
+      const bool grey = channels == 2;
+      EXPECT_THAT(std::vector(read, read + 3), ElementsAre(written[grey ? 0 : 2], written[grey ? 0 : 1], written[0]));
+      if (channels != 3) {
+        EXPECT_EQ(read[3], written[channels - 1]);
+      }
+    }
+  }
+}
+
+TEST(PlainPng, DifferencesFromTheRowAboveAreReadAsLibpngReadsThem) {
   for (const auto& rows : {filtered({0, 0, 0, 0, 0}), filtered({2, 2, 2, 2, 2}), filtered({0, 2, 2, 0, 2})}) {
     const auto png = png_of_rows(kHeader, rows);
     ASSERT_TRUE(read_fast(png));
@@ -78,7 +99,7 @@ TEST(GreyPng, DifferencesFromTheRowAboveAreReadAsLibpngReadsThem) {
   }
 }
 
-TEST(GreyPng, PixelsMayBeInManyChunks) {
+TEST(PlainPng, PixelsMayBeInManyChunks) {
   const std::string packed = packed_by_zlib(filtered({0, 2, 0, 2, 0}));
   std::string chunks;
   for (const char byte : packed) chunks += png_chunk("IDAT", {&byte, 1});
@@ -87,7 +108,7 @@ TEST(GreyPng, PixelsMayBeInManyChunks) {
   EXPECT_EQ(read_fast(png), read_otherwise(png));
 }
 
-TEST(GreyPng, WhatIsNotAsPlainIsLeftToLibpng) {
+TEST(PlainPng, WhatIsNotAsPlainIsLeftToLibpng) {
   const std::string rows = filtered({0, 0, 0, 0, 0});
   const std::string pixels = png_chunk("IDAT", packed_by_zlib(rows));
   const std::string text = png_chunk("tEXt", std::string_view("Title\0a town", 12));
@@ -104,8 +125,8 @@ TEST(GreyPng, WhatIsNotAsPlainIsLeftToLibpng) {
   }
 }
 
-TEST(GreyPng, AnotherShapeIsNotRead) {
-  const auto png = encode_grey_png(random_pixels(kShape), kShape);
+TEST(PlainPng, AnotherShapeIsNotRead) {
+  const auto png = encode_plain_png(random_pixels(kShape), kShape);
   for (const PngShape& other : {PngShape{5, 6, 1, 16}, PngShape{12, 5, 1, 8}, PngShape{6, 4, 1, 16}}) {
     EXPECT_FALSE(read_fast(png, other));
   }
@@ -115,7 +136,7 @@ TEST(GreyPng, AnotherShapeIsNotRead) {
   EXPECT_FALSE(read_fast(png_of_rows({12, 5, 8, 3, 0}, rows), {12, 5, 1, 8})) << "palette";
 }
 
-TEST(GreyPng, DamageIsReadByNeitherReader) {
+TEST(PlainPng, DamageIsReadByNeitherReader) {
   const std::string rows = filtered({0, 2, 0, 2, 0});
   const std::string packed = packed_by_zlib(rows);
   std::string wrong_sum = packed;
@@ -142,8 +163,8 @@ TEST(GreyPng, DamageIsReadByNeitherReader) {
   }
 }
 
-TEST(GreyPng, EachChangedOrMissingByteIsFound) {
-  const auto png = encode_grey_png(random_pixels(kShape), kShape);
+TEST(PlainPng, EachChangedOrMissingByteIsFound) {
+  const auto png = encode_plain_png(random_pixels(kShape), kShape);
   for (std::size_t i = 0; i < png.size(); ++i) {
     EXPECT_FALSE(read_fast(std::span(png).first(i))) << i << " bytes";
     auto damaged = png;

@@ -1,8 +1,9 @@
-#include "core/png/grey_png.hpp"
+#include "core/png/plain_png.hpp"
 
 #include <libdeflate.h>
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <memory>
 #include <new>
@@ -31,10 +32,12 @@ using Unpacker = std::unique_ptr<libdeflate_decompressor, Free<libdeflate_free_d
 
 std::size_t row_bytes(const PngShape& shape) { return shape.bytes() / static_cast<std::size_t>(shape.rows); }
 
-/// Data of the chunk IHDR: grey, packed and filtered in the only way there is, not interlaced.
+/// Data of the chunk IHDR: packed and filtered in the only way there is, not interlaced.
 std::string header(const PngShape& shape) {
+  constexpr std::array<char, 4> kColourTypes{0, 4, 2, 6};  // by channels: grey, with alpha, RGB, with alpha
+  const char colour_type = kColourTypes.at(static_cast<std::size_t>(shape.channels - 1));
   return png_number(static_cast<std::uint32_t>(shape.cols)) + png_number(static_cast<std::uint32_t>(shape.rows)) +
-         std::string{static_cast<char>(shape.bits), 0, 0, 0, 0};
+         std::string{static_cast<char>(shape.bits), colour_type, 0, 0, 0};
 }
 
 std::string packed(std::string_view bytes) {
@@ -97,8 +100,8 @@ bool unfilter(std::span<const std::uint8_t> rows, std::size_t row_bytes, std::sp
 
 }  // namespace
 
-std::vector<std::byte> encode_grey_png(std::span<const std::uint8_t> pixels, const PngShape& shape) {
-  assert(shape.channels == 1 && pixels.size() == shape.bytes());
+std::vector<std::byte> encode_plain_png(std::span<const std::uint8_t> pixels, const PngShape& shape) {
+  assert(pixels.size() == shape.bytes());
   std::string rows;
   rows.reserve(pixels.size() + static_cast<std::size_t>(shape.rows));
   for (std::size_t at = 0; at < pixels.size(); at += row_bytes(shape)) {
@@ -111,7 +114,7 @@ std::vector<std::byte> encode_grey_png(std::span<const std::uint8_t> pixels, con
   return {bytes.begin(), bytes.end()};
 }
 
-bool read_grey_png(std::span<const std::byte> png, const PngShape& shape, std::span<std::uint8_t> pixels) {
+bool read_plain_png(std::span<const std::byte> png, const PngShape& shape, std::span<std::uint8_t> pixels) {
   assert(shape.channels == 1 && pixels.size() == shape.bytes());
   const auto stream = stream_in({reinterpret_cast<const char*>(png.data()), png.size()}, shape);
   std::vector<std::uint8_t> rows(pixels.size() + static_cast<std::size_t>(shape.rows));

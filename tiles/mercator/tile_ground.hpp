@@ -4,15 +4,18 @@
 #include <vector>
 
 #include "core/locate/map_view.hpp"
-#include "server/api/web_mercator.hpp"
+#include "tiles/mercator/web_mercator.hpp"
 
-namespace roadfix::api {
+namespace roadfix::mercator {
 
 /// Pixels of a tile [left, right) x [top, bottom).
 struct PixelBox {
   int left = 0, top = 0, right = 0, bottom = 0;
   bool empty() const { return left >= right || top >= bottom; }
 };
+
+/// The tiles of a zoom that touch a box of the plane, which is not empty.
+std::vector<TileAddress> tiles_on(const UtmZone& zone, const GridBox& box, int zoom);
 
 /// Those that the map's extent, which is not empty, touches.
 PixelBox touched_pixels(const MapView& map, TileAddress tile);
@@ -40,4 +43,4 @@ class PixelToGrid {
   std::vector<GridPoint> points_;
 };
 
-}  // namespace roadfix::api
+}  // namespace roadfix::mercator

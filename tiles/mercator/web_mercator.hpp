@@ -1,11 +1,11 @@
 // Tiles of the Web-Mercator square (EPSG:3857, XYZ scheme: x from the antimeridian east, y from the north).
 #pragma once
 
-#include <string>
+#include <compare>
 
 #include "core/geodesy/latlon.hpp"
 
-namespace roadfix::api {
+namespace roadfix::mercator {
 
 inline constexpr int kTilePixels = 256;
 inline constexpr int kMaxZoom = 24;
@@ -15,10 +15,8 @@ struct TileAddress {
   int z = 0;
   int x = 0;
   int y = 0;
+  friend auto operator<=>(const TileAddress&, const TileAddress&) = default;
 };
-
-/// Throws NotFound ("tile-not-found") for anything that is no tile of the square, and for numbers that begin with 0.
-TileAddress parse_tile(const std::string& z, const std::string& x, const std::string& y);
 
 /// Continuous pixel coordinates of the whole square at a zoom; the poles are at infinity.
 struct MercatorPixel {
@@ -32,4 +30,4 @@ LatLon lat_lon(MercatorPixel pixel, int zoom);
 /// Side of a pixel on the ground at that latitude, on the sphere that Web Mercator takes the Earth for.
 double metres_per_pixel(double lat_deg, int zoom);
 
-}  // namespace roadfix::api
+}  // namespace roadfix::mercator

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "cli/bench/calibrate.hpp"
 #include "cli/bench/curves.hpp"
@@ -52,12 +53,17 @@ bench::Manifest manifest_of(const BenchArguments& arguments) {
   return arguments.methods ? bench::with_methods(std::move(manifest), *arguments.methods) : manifest;
 }
 
+/// That which an environment variable names, unless it would depend on the folder that the command is started in.
+std::optional<std::filesystem::path> folder_named_by(const char* variable) {
+  const char* name = std::getenv(variable);
+  std::filesystem::path folder(name != nullptr ? name : "");
+  return folder.is_absolute() ? std::optional(std::move(folder)) : std::nullopt;
+}
+
 std::filesystem::path default_cache() {
-  const char* home = std::getenv("XDG_CACHE_HOME");
-  if (home != nullptr && *home != '\0') return std::filesystem::path(home) / "roadfix";
-  const char* user = std::getenv("HOME");
-  return user != nullptr ? std::filesystem::path(user) / ".cache" / "roadfix"
-                         : std::filesystem::temp_directory_path() / "roadfix";
+  if (const auto caches = folder_named_by("XDG_CACHE_HOME")) return *caches / "roadfix";
+  if (const auto home = folder_named_by("HOME")) return *home / ".cache" / "roadfix";
+  return std::filesystem::temp_directory_path() / "roadfix";
 }
 
 /// One progress line for each task, in turn.
@@ -244,7 +250,9 @@ void add_bench_command(CLI::App& app) {
       ->check(between(0.0, 1.0));
   add_threads_option(*command, "--jobs", a->options.jobs,
                      "Blocks or queries in progress at a time; 1 to measure times");
-  command->add_option("--map-cache", a->cache, "Folder for the built maps; default: the user's cache folder");
+  command->add_option(
+      "--map-cache", a->cache,
+      "Folder for the built maps; default: the user's cache folder, without a home one for temporary files");
   add_detector_options(*command, a->detector);
   command
       ->add_option("--map-orientations", a->map_orientations,

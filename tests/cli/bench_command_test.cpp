@@ -1,6 +1,8 @@
 // roadfix bench as a script meets it, over an invented town.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -52,6 +54,23 @@ TEST(BenchCommand, WritesNothingButItsFiguresToStandardOutput) {
                                      (folder / "cache").string() + " --json /dev/stdout");
   ASSERT_EQ(bench.code, 0) << bench.err;
   EXPECT_TRUE(nlohmann::json::accept(bench.out)) << bench.out;
+}
+
+TEST(BenchCommand, KeepsMapsInTheFolderForTemporaryFilesWhereNoHomeIsNamed) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "town.json")
+      << R"({"maps": [{"name": "town", "sources": [{"as": "invented", "seed": 3, "side_m": 800}]}],
+    "queries": [{"map": "town", "image": null, "count": 1, "footprint_m": [300, 300], "prior": {"radius_m": 200}}]})";
+  const auto start = folder / "start";
+  const auto temporary = folder / "temporary";
+  std::filesystem::create_directory(start);
+  std::filesystem::create_directory(temporary);
+  const std::string command =
+      fmt::format("cd {} && HOME= XDG_CACHE_HOME=cache TMPDIR={} {} bench {} --detector tree >{} 2>&1", start.string(),
+                  temporary.string(), ROADFIX_PROGRAM, (folder / "town.json").string(), (folder / "said").string());
+  EXPECT_EQ(std::system(command.c_str()), 0) << text_of(folder / "said");
+  EXPECT_TRUE(std::filesystem::is_empty(start));
+  EXPECT_FALSE(std::filesystem::is_empty(temporary / "roadfix"));
 }
 
 TEST(BenchCommand, ReadsMapsInMoreOrientationsThanFramesWhereItIsTold) {

@@ -166,6 +166,14 @@ std::string crs_name(const OGRSpatialReference& reference) {
   return name != nullptr ? name : "unnamed";
 }
 
+bool lies_on_earth(const OGRSpatialReference& reference) {
+  return reference.IsLocal() == FALSE && crs_name(reference) != "Undefined geographic SRS";
+}
+
+std::string not_on_earth(const OGRSpatialReference* reference) {
+  return reference == nullptr ? "" : fmt::format(" of the Earth (it names '{}')", crs_name(*reference));
+}
+
 bool on_old_ellipsoid(const OGRSpatialReference& reference) {
   constexpr double kWgs84M = 6378137.0;  // GRS 80 and the sphere of web maps, too
   constexpr double kSameM = 0.01;  // a survey's own datum may have an ellipsoid that is only 3 m larger (Xian 1980)

@@ -55,6 +55,11 @@ OGRSpatialReference wgs84_reference();
 /// "EPSG:26986", WKT, PROJ text. Throws InvalidInput "crs-unknown".
 OGRSpatialReference parse_crs(const std::string& text);
 std::string crs_name(const OGRSpatialReference& reference);
+/// Whether it says where on Earth coordinates lie: neither the grid of a site nor what GDAL gives to a GeoPackage that
+/// says of a layer that its reference system is not defined.
+bool lies_on_earth(const OGRSpatialReference& reference);
+/// "" for nullptr, else that the reference system, by its name, does not do that; goes on after "no reference system".
+std::string not_on_earth(const OGRSpatialReference* reference);
 /// What to do about a wrong reference system. Commands that only look at imagery read it with the same functions as
 /// `ingest`, and have no --crs.
 inline constexpr std::string_view kGiveRightCrs = "give the right one with --crs of ingest, or write it into the file";

@@ -19,7 +19,7 @@ bool is_placed(GDALDataset& raster) {
 std::optional<OGRSpatialReference> crs_within(GDALDataset& raster) {
   const OGRSpatialReference* own = raster.GetSpatialRef();
   if (own == nullptr) own = raster.GetGCPSpatialRef();
-  if (own != nullptr) {
+  if (own != nullptr && lies_on_earth(*own)) {
     OGRSpatialReference crs = *own;
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     return crs;
@@ -43,9 +43,9 @@ OGRSpatialReference reference_of(GDALDataset& raster, const std::string& path, c
   if (const auto own = crs_within(raster)) return *own;
   if (const auto beside = crs_beside(path)) return *beside;
   throw InvalidInput("image-without-georeference",
-                     fmt::format("{}: has coordinates but no reference system; name it in a .prj file beside it, or "
+                     fmt::format("{}: has coordinates but no reference system{}; name it in a .prj file beside it, or "
                                  "with --crs of ingest, for example --crs EPSG:32637",
-                                 path));
+                                 path, not_on_earth(raster.GetSpatialRef())));
 }
 
 }  // namespace roadfix

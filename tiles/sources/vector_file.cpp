@@ -108,15 +108,15 @@ std::string VectorFile::layer_names() const {
 OGRSpatialReference VectorFile::crs_of(OGRLayer& layer) const {
   if (auto known = known_crs_of(layer)) return *known;
   throw InvalidInput("roads-without-georeference",
-                     fmt::format("{}: layer '{}' has no reference system; name it with --crs, for example --crs "
+                     fmt::format("{}: layer '{}' has no reference system{}; name it with --crs, for example --crs "
                                  "EPSG:32637",
-                                 path_, layer.GetName()));
+                                 path_, layer.GetName(), not_on_earth(layer.GetSpatialRef())));
 }
 
 std::optional<OGRSpatialReference> VectorFile::known_crs_of(OGRLayer& layer) const {
   if (!options_.crs.empty()) return parse_crs(options_.crs);
   const OGRSpatialReference* own = layer.GetSpatialRef();
-  if (own == nullptr) return crs_beside(path_);
+  if (own == nullptr || !lies_on_earth(*own)) return crs_beside(path_);
   OGRSpatialReference crs = *own;
   crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
   return crs;

@@ -255,6 +255,16 @@ TEST_F(MosaicTest, AnOldEllipsoidNeedsADatumToLieAnywhere) {
   }
 }
 
+TEST_F(MosaicTest, TheGridOfASiteSaysNothingOfWhereOnEarthAnImageLies) {
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0}, [](int, int, int) { return 1.0; });
+  DatasetPtr(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE))
+      ->SetProjection(R"(LOCAL_CS["Site grid",UNIT["metre",1]])");
+  const auto message = testing::message_of([&] { Mosaic({path}, {}, ValueRule::kPicture, kZone); });
+  EXPECT_THAT(message, ::testing::HasSubstr("no reference system of the Earth (it names 'Site grid')"));
+  const Mosaic placed({path}, {.crs = "EPSG:32637", .collar = {}}, ValueRule::kPicture, kZone);
+  EXPECT_NEAR(placed.extent().min.east_m, 400000.0, 0.1);
+}
+
 TEST_F(MosaicTest, ARasterThatGoesOnBeyondTheEndOfItsReferenceSystemIsRefused) {
   constexpr double kAntimeridianM = 20037508.34;
   RasterSpec spec{.width = 200, .height = 100, .epsg = 3857};

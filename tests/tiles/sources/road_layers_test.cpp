@@ -118,6 +118,21 @@ TEST_F(RoadLayers, OfAShapefileMayHaveTheirReferenceSystemInWkt2) {
   EXPECT_NEAR(centre_of_roads({path}, {}).lat_deg, kZone.unproject({400'050, 4'200'050}).lat_deg, 1e-6);
 }
 
+TEST_F(RoadLayers, OfAGeoPackageThatLeavesTheirReferenceSystemOpenNeedOne) {
+  const std::string file = street();
+  {
+    const DatasetPtr open = create_package();
+    OGRLayer* layer = open->CreateLayer("roads", nullptr, wkbLineString);
+    OGRFeature road(layer->GetLayerDefn());
+    road.SetGeometry(
+        OGRFeatureUniquePtr(open_dataset(file, GDAL_OF_VECTOR)->GetLayer(0)->GetNextFeature())->GetGeometryRef());
+    ASSERT_EQ(layer->CreateFeature(&road), OGRERR_NONE);
+  }
+  EXPECT_EQ(code_of([&] { centre_of_roads({package()}, {}); }), "roads-without-georeference");
+  const VectorOptions options{.crs = "EPSG:4326", .layer = "", .extent = ""};
+  EXPECT_NEAR(centre_of_roads({package()}, options).lat_deg, kZone.unproject(kCentre).lat_deg, 1e-6);
+}
+
 TEST_F(RoadLayers, AnEmptyFileIsCalledEmptyAndBesideOthersItCostsNothing) {
   const std::string empty = (folder / "empty.geojson").string();
   std::ofstream(empty) << R"({"type":"FeatureCollection","features":[]})";

@@ -23,7 +23,6 @@
 #include "core/units/parallel_for.hpp"
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/pipeline/training_pairs.hpp"
-#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
@@ -74,7 +73,7 @@ Ground open_ground(const PairsArguments& arguments, const std::stop_token& stop)
   if (!arguments.collar.empty()) raster.collar = parse_colour(arguments.collar);
   const UtmZone zone = zone_of_image(pictures.paths.front(), raster);
   auto imagery = std::make_unique<Mosaic>(pictures.paths, raster, ValueRule::kPicture, zone);
-  print_notes(pictures, notes_on_imagery(pictures.paths.front(), raster));
+  print_notes(pictures, imagery->band_notes());
   const double gsd_m = arguments.gsd_m.value_or(pair_gsd_m(imagery->gsd_m()));
   std::unique_ptr<CellSource> roads = open_roads(arguments, {zone, gsd_m}, stop);
   return {arguments.name.empty() ? pictures.name : arguments.name, std::move(imagery), std::move(roads), gsd_m};

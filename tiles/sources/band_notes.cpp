@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <opencv2/core.hpp>
+#include <cstddef>
 #include <optional>
 #include <utility>
 
@@ -31,23 +31,23 @@ std::optional<std::string> note_on_colours(const RasterFile& file) {
 }
 
 std::optional<std::string> note_on_alpha(RasterFile& file) {
-  constexpr double kTransparent = 0.02;
   constexpr double kWorthNoting = 0.1;
   const int band = file.alpha_band();
   if (band == 0) return std::nullopt;
-  int seen = 0;
-  int graded = 0;
-  for (const cv::Rect& window : file.sample_windows()) {
-    const cv::Mat opacity = file.read_opacity(window);
-    seen += window.area();
-    graded += cv::countNonZero((opacity > kTransparent) & (opacity < 1.0 - kTransparent));
+  const AlphaScale& opacity = file.opacity();
+  if (opacity.varied) {
+    return fmt::format(
+        "{0}: the values of its alpha band, band {1}, vary as those of near infrared do, so only what is next to 0 "
+        "there counts as not seen. If it does hold something else than opacity, say so (gdal_edit.py -colorinterp_{1} "
+        "undefined) and run this again (ingest: with --replace); if not, make it 0 and 255",
+        file.path(), band);
   }
-  if (graded <= kWorthNoting * seen) return std::nullopt;
+  if (opacity.graded <= kWorthNoting) return std::nullopt;
   return fmt::format(
       "{0}: {1:.0f} % of it is half transparent by its alpha band, band {2}, and what is less than half opaque counts "
       "as not seen. If band {2} holds something else, such as near infrared, say so (gdal_edit.py -colorinterp_{2} "
       "undefined) and run this again (ingest: with --replace)",
-      file.path(), 100.0 * graded / seen, band);
+      file.path(), 100.0 * opacity.graded, band);
 }
 
 std::optional<std::string> note_on_likely_heights(const RasterFile& file) {
@@ -62,15 +62,32 @@ std::optional<std::string> note_on_likely_heights(const RasterFile& file) {
 
 bool looks_like_heights(const RasterFile& file) { return file.channels() == 1 && !file.holds_integers(); }
 
-std::vector<std::string> notes_on_imagery(const std::string& path, const RasterOptions& options) {
-  RasterFile file(path, options);
-  std::optional<std::string> meaning = note_on_likely_roads(path, options);
+void BandNotes::add(RasterFile& file) {
+  std::optional<std::string> meaning = note_on_likely_roads(file);
   if (!meaning) meaning = note_on_likely_heights(file);
-  std::vector<std::string> notes;
-  for (auto& note : {std::move(meaning), note_on_colours(file), note_on_alpha(file)}) {
-    if (note) notes.push_back(*note);
+  const std::array notes{std::move(meaning), note_on_colours(file), note_on_alpha(file)};
+  for (std::size_t i = 0; i < notes.size(); ++i) {
+    if (!notes[i]) continue;
+    Kind& kind = kinds_[i];
+    if (kind.first.empty()) {
+      kind.first = *notes[i];
+    } else if (kind.others++ == 0) {
+      kind.next = file.path();
+    }
   }
-  return notes;
+}
+
+std::vector<std::string> BandNotes::texts() const {
+  std::vector<std::string> texts;
+  for (const Kind& kind : kinds_) {
+    if (kind.first.empty()) continue;
+    texts.push_back(kind.first);
+    if (kind.others > 0) {
+      texts.back() +=
+          fmt::format(". The like holds for {} of its other images, the first of them {}", kind.others, kind.next);
+    }
+  }
+  return texts;
 }
 
 }  // namespace roadfix

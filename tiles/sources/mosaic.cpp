@@ -141,7 +141,7 @@ struct Mosaic::Image {
   std::vector<GridBox> parts;
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
-  double full_opacity = 1.0;
+  AlphaScale opacity = {};
   Sampled sampled = {};
   bool exported = false;
   ValueRange range = {};
@@ -180,7 +180,7 @@ void Mosaic::add_image(const std::string& path, ThinnedValues& values) {
               georeference.boxes_of_parts(),
               georeference.gsd_m(),
               rule_ == ValueRule::kPicture ? file.declared_range() : std::nullopt,
-              file.full_opacity()};
+              file.opacity()};
   extent_ = united(extent_, image.footprint);
   gsd_m_ = std::min(gsd_m_, image.gsd_m);
   channels_ = std::max(channels_, image.content.channels);
@@ -192,6 +192,7 @@ void Mosaic::add_image(const std::string& path, ThinnedValues& values) {
   told_.push_back(provenance_in(file.dataset()));
   image.exported = holds_exported_roads(file.dataset());
   exported_ = exported_ && image.exported;
+  if (rule_ == ValueRule::kPicture) notes_.add(file);
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
     image.sampled = sampled_in(sample);
@@ -273,7 +274,7 @@ std::shared_ptr<RasterFile> Mosaic::open(const Image& image, double gsd_m) const
   const std::optional<int> overview = file->overview_for(gsd_m / image.gsd_m);
   // The collar was judged on the pixels of the full image, and its windows are in them.
   if (overview && !image.collar) file = std::make_shared<RasterFile>(image.content.path, options_, overview);
-  file->set_full_opacity(image.full_opacity);
+  file->set_opacity(image.opacity);
   return file;
 }
 

@@ -17,6 +17,7 @@
 #include "core/geodesy/utm.hpp"
 #include "core/units/planar.hpp"
 #include "core/units/provenance.hpp"
+#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/position_error.hpp"
 #include "tiles/sources/raster_file.hpp"
@@ -58,6 +59,9 @@ class Mosaic {
   /// Each of the image of which it is the largest.
   const PositionErrors& position_errors() const { return position_errors_; }
 
+  /// Of pictures: what they say, or do not say, about the meaning of their bands.
+  std::vector<std::string> band_notes() const { return notes_.texts(); }
+
   /// What the images tell of themselves together; the registration error only where each tells its own.
   Provenance told() const;
 
@@ -89,6 +93,7 @@ class Mosaic {
   std::string crs_;
   PositionErrors position_errors_;
   std::vector<Provenance> told_;  ///< by each image
+  BandNotes notes_;
   mutable std::mutex mutex_;
   mutable std::list<std::unique_ptr<Handle>> idle_;  ///< the most recently used first
   /// Of images that all threads read through one file, since each file would unpack and keep all their rows.

@@ -33,19 +33,6 @@ bool holds_signed_bytes(GDALRasterBand& band) {
   return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
-double largest_opacity(GDALDataType type) {
-  switch (type) {
-    case GDT_Byte:
-      return 255.0;
-    case GDT_UInt16:
-      return 65535.0;
-    case GDT_Int16:
-      return 32767.0;
-    default:
-      return 1.0;
-  }
-}
-
 /// Least and largest of the valid values and 0.
 ValueRange extremes(const cv::Mat& values, const cv::Mat& valid) {
   ValueRange range;
@@ -219,30 +206,27 @@ cv::Mat RasterFile::read_alpha(cv::Rect window) {
   return alpha;
 }
 
-double RasterFile::full_opacity() {
-  if (!full_opacity_) full_opacity_ = alpha_band_ > 0 ? sample_full_opacity() : 1.0;
-  return *full_opacity_;
+const AlphaScale& RasterFile::opacity() {
+  if (!opacity_) opacity_ = alpha_band_ > 0 ? sample_opacity() : AlphaScale{};
+  return *opacity_;
 }
 
-double RasterFile::sample_full_opacity() {
-  constexpr double kByte = 255.0;
-  const GDALDataType type = dataset_->GetRasterBand(alpha_band_)->GetRasterDataType();
-  if (type == GDT_Byte) return kByte;
-  double largest = 0.0;
-  for (const cv::Rect& window : sample_windows()) {
-    double here = 0.0;
-    cv::minMaxLoc(read_alpha(window), nullptr, &here);
-    largest = std::max(largest, here);
-  }
-  if (largest > 0.0 && largest <= 1.0) return 1.0;
-  return largest > 0.0 && largest <= kByte ? kByte : largest_opacity(type);
+AlphaScale RasterFile::sample_opacity() {
+  constexpr std::size_t kStep = 5;  // which leads through all rows and columns of them
+  const std::vector<cv::Rect> windows = sample_windows();
+  std::vector<float> samples;
+  const auto add = [&](const cv::Rect& window) {
+    const cv::Mat alpha = read_alpha(window);
+    samples.insert(samples.end(), alpha.begin<float>(), alpha.end<float>());
+  };
+  for (std::size_t i = 0; i < windows.size(); i += kStep) add(windows[i]);
+  if (std::ranges::all_of(samples, [](float value) { return value == 0.0F; })) std::ranges::for_each(windows, add);
+  return alpha_scale(samples, dataset_->GetRasterBand(alpha_band_)->GetRasterDataType());
 }
-
-cv::Mat RasterFile::read_opacity(cv::Rect window) { return read_alpha(window) / full_opacity(); }
 
 cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
-  if (alpha_band_ > 0 || has_mask_) valid = read_opacity(window) >= 0.5;
+  if (alpha_band_ > 0 || has_mask_) valid = read_alpha(window) >= 0.5 * opacity().full;
   clear_nodata(values, nodata_, valid);
   if (filled_) clear_beside(*filled_, window, valid);
   return valid;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/units/planar.hpp"
+#include "tiles/sources/alpha_scale.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -41,8 +42,8 @@ struct RasterPixels {
   cv::Mat valid;   ///< CV_8UC1, 0 or 255
 };
 
-/// Several threads may call read(), read_numbers() and read_opacity() once full_opacity() is known, which take turns
-/// with the file; all else that reads it needs take_turn() there.
+/// Several threads may call read() and read_numbers() once opacity() is known, which take turns with the file; all else
+/// that reads it needs take_turn() there.
 class RasterFile {
  public:
   /// Throws NotFound, InvalidInput ("source-unreadable", "image-without-bands", "image-without-georeference").
@@ -77,13 +78,10 @@ class RasterFile {
   RasterPixels read(cv::Rect window, const ValueRange& range);
   /// Values as the file stores them: of a palette the indices. Throws CorruptData as read().
   RasterPixels read_numbers(cv::Rect window);
-  /// Value of the alpha band where all is opaque, 1 without. Of more than 8 bits by the largest value that is sampled:
-  /// programs widen pictures without their alpha.
-  double full_opacity();
+  /// That of the alpha band, by samples.
+  const AlphaScale& opacity();
   /// Spares the samples where another handle of the file has taken them.
-  void set_full_opacity(double value) { full_opacity_ = value; }
-  /// 0 to 1 by the alpha band or the mask, which the image must have; as CV_32F.
-  cv::Mat read_opacity(cv::Rect window);
+  void set_opacity(const AlphaScale& opacity) { opacity_ = opacity; }
   /// Of a VRT those in which its images lie, of a file that leaves blocks of nothing out those that it holds, else one,
   /// all of it. None is empty, but there may be none.
   std::vector<cv::Rect> parts() const;
@@ -103,7 +101,7 @@ class RasterFile {
   std::vector<cv::Rect> all_windows() const;
   std::vector<float> valid_values(cv::Rect window);
   cv::Mat read_alpha(cv::Rect window);
-  double sample_full_opacity();
+  AlphaScale sample_opacity();
   cv::Mat read_stored(cv::Rect window);
   cv::Mat read_bands(cv::Rect window, int cv_depth, GDALDataType type);
   cv::Mat read_validity(cv::Rect window, const cv::Mat& values);
@@ -116,7 +114,7 @@ class RasterFile {
   std::vector<std::optional<double>> nodata_;         ///< of each of them
   std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
   int alpha_band_ = 0;                                ///< 0 without
-  std::optional<double> full_opacity_;                ///< as far as it is known
+  std::optional<AlphaScale> opacity_;                 ///< as far as it is known
   std::optional<std::vector<cv::Rect>> filled_;       ///< parts in which a file with gaps holds something
   bool signed_bytes_ = false;                         ///< in the type of unsigned ones
   bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band

@@ -13,7 +13,6 @@
 #include "core/detect/blank_ground.hpp"
 #include "core/detect/frame.hpp"
 #include "core/units/error.hpp"
-#include "tiles/sources/band_notes.hpp"
 #include "tiles/sources/fingerprint.hpp"
 #include "tiles/sources/mosaic.hpp"
 #include "tiles/sources/road_rules.hpp"
@@ -86,7 +85,7 @@ class Imagery final : public CellSource {
     summary_.native_gsd_m = mosaic_.gsd_m();
     summary_.chosen_gsd_m = gsd_m_;
     state_position(mosaic_, kImagerySigmaM, summary_);
-    std::ranges::move(notes_on_imagery(paths.front(), options), std::back_inserter(summary_.notes));
+    std::ranges::move(mosaic_.band_notes(), std::back_inserter(summary_.notes));
   }
 
   SourceSummary summary() const override { return summary_; }

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
+#include <limits>
 #include <opencv2/imgproc.hpp>
 
 #include "core/units/error.hpp"
@@ -20,6 +22,40 @@ std::string note_on_labels(const std::string& path, double largest, double certa
       "as nodata (gdal_edit.py -a_nodata {1:g}) and run this again (ingest: with --replace)",
       path, largest, 100.0 / certain, 100.0 * largest / certain, certain);
 }
+
+/// Values of one band: whether they are two alone, or probabilities.
+class LikelyRoads {
+ public:
+  explicit LikelyRoads(bool may_be_probabilities) : probabilities_(may_be_probabilities) {}
+
+  /// False once they are neither.
+  bool agree(const cv::Mat& values, const cv::Mat& valid) {
+    for (int row = 0; row < values.rows; ++row) {
+      for (int col = 0; col < values.cols; ++col) {
+        if (valid.at<std::uint8_t>(row, col) != 0 && !agrees(values.at<float>(row, col))) return false;
+      }
+    }
+    return true;
+  }
+  bool vary() const { return low_ < high_; }
+  bool are_two() const { return two_; }
+  ValueRange seen() const { return {low_, high_}; }
+
+ private:
+  bool agrees(float value) {
+    probabilities_ = probabilities_ && value >= 0.0F && value <= 1.0F;
+    const bool known = value == low_ || value == high_;
+    two_ = two_ && (known || low_ >= high_);  // the third one ends it
+    low_ = std::min(low_, value);
+    high_ = std::max(high_, value);
+    return two_ || probabilities_;
+  }
+
+  bool probabilities_;
+  bool two_ = true;
+  float low_ = std::numeric_limits<float>::infinity();
+  float high_ = -std::numeric_limits<float>::infinity();
+};
 
 }  // namespace
 
@@ -123,20 +159,20 @@ std::optional<std::string> note_on_copied_roads(const RasterFile& file) {
       file.path());
 }
 
-std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options) {
-  RasterFile file(path, options);
-  if (file.channels() != 1) return std::nullopt;
-  const std::vector<float> values = file.sample_values();
-  if (values.empty()) return std::nullopt;
-  const auto [min, max] = std::ranges::minmax(values);
-  const bool mask =
-      min < max && std::ranges::all_of(values, [&, a = min, b = max](float v) { return v == a || v == b; });
-  const bool probabilities = !file.holds_integers() && min < max && min >= 0.0F && max <= 1.0F;
-  if (!mask && !probabilities) return std::nullopt;
+std::optional<std::string> note_on_likely_roads(RasterFile& file) {
+  if (file.channels() != 1 && !file.has_palette()) return std::nullopt;
+  LikelyRoads likely(!file.holds_integers());
+  for (const cv::Rect& window : file.sample_windows()) {
+    const auto [values, valid] = file.read_numbers(window);
+    if (!likely.agree(values, valid)) return std::nullopt;
+  }
+  if (!likely.vary()) return std::nullopt;
+  const ValueRange seen = likely.seen();
   return fmt::format(
       "{}: its values are {:g} {} {:g}, as those of {}. If it shows roads rather than the ground, it is no imagery "
       "(ingest: give --as roads)",
-      path, min, mask ? "and" : "to", max, mask ? "a mask of roads are" : "probabilities are");
+      file.path(), seen.low, likely.are_two() ? "and" : "to", seen.high,
+      likely.are_two() ? "a mask of roads are" : "probabilities are");
 }
 
 }  // namespace roadfix

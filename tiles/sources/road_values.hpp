@@ -36,7 +36,8 @@ std::optional<std::string> note_on_likely_picture(const std::string& path, const
 /// themselves.
 std::optional<std::string> note_on_copied_roads(const RasterFile& file);
 
-/// For imagery: a note where the file has one band of floats within 0..1, or of two values alone.
-std::optional<std::string> note_on_likely_roads(const std::string& path, const RasterOptions& options);
+/// For imagery: a note where the file has one band, with a palette or without, of two values alone, or of floats within
+/// 0..1.
+std::optional<std::string> note_on_likely_roads(RasterFile& file);
 
 }  // namespace roadfix

@@ -161,7 +161,9 @@ TEST(Imagery, WithAnAlphaBandThatLooksLikeNearInfraredGetsANote) {
     return open_imagery({path}, {}, kZone, 2.0, detector)->summary().notes;
   };
   EXPECT_THAT(notes([](int col, int row) { return (3 * col + row) % 256; }),
-              ::testing::ElementsAre(::testing::HasSubstr("-colorinterp_4 undefined")));
+              ::testing::ElementsAre(::testing::HasSubstr("vary as those of near infrared")));
+  EXPECT_THAT(notes([](int col, int) { return col < 96 ? 2 * col : 255; }),
+              ::testing::ElementsAre(::testing::HasSubstr("less than half opaque counts as not seen")));
   EXPECT_THAT(notes([](int col, int) { return std::clamp(32 * col - 512, 0, 255); }), ::testing::IsEmpty());
 }
 
@@ -187,6 +189,35 @@ TEST(Imagery, OfMoreBandsThanColoursWithoutNamesGetsANote) {
   EXPECT_THAT(notes(3, {kNone, GCI_RedBand, GCI_GreenBand}),
               ::testing::ElementsAre(::testing::HasSubstr("not all of red, green and blue are named")))
       << "near infrared first";
+}
+
+TEST(Imagery, NotesAreThoseOfEachImageWhicheverComesFirst) {
+  const testing::TemporaryFolder folder;
+  const BlurDetector detector;
+  const auto image = [&](const std::string& name, int bands, const std::vector<GDALColorInterp>& meanings) {
+    const RasterSpec spec{.width = 256,
+                          .height = 256,
+                          .bands = bands,
+                          .transform = {{400000.0, 1.0, 0.0, 4200256.0, 0.0, -1.0}},
+                          .meanings = meanings};
+    return write_raster(folder / name, spec,
+                        [](int band, int col, int row) { return 20.0 + (band * 3 + 5 * col + row) % 200; });
+  };
+  constexpr GDALColorInterp kNone = GCI_Undefined;
+  const std::string usual = image("a.tif", 3, {GCI_RedBand, GCI_GreenBand, GCI_BlueBand});
+  const std::string unnamed = image("b.tif", 4, {GCI_GrayIndex, kNone, kNone, kNone});
+  const std::string infrared = image("c.tif", 4, {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_AlphaBand});
+  const std::string again = image("d.tif", 5, {GCI_GrayIndex, kNone, kNone, kNone, kNone});
+  const auto notes = [&](const std::vector<std::string>& paths) {
+    return open_imagery(paths, {}, kZone, 2.0, detector)->summary().notes;
+  };
+  EXPECT_THAT(notes({usual}), ::testing::IsEmpty());
+  EXPECT_THAT(notes({usual, unnamed, infrared}),
+              ::testing::ElementsAre(::testing::StartsWith(unnamed), ::testing::StartsWith(infrared)));
+  EXPECT_THAT(
+      notes({usual, unnamed, again}),
+      ::testing::ElementsAre(::testing::AllOf(
+          ::testing::StartsWith(unnamed), ::testing::EndsWith("1 of its other images, the first of them " + again))));
 }
 
 TEST(Imagery, OfRealNumbersInOneBandIsSaidToLookLikeHeights) {
@@ -301,7 +332,8 @@ TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
   const testing::TemporaryFolder folder;
   const auto note = [&](GDALDataType type, const testing::PixelFunction& value) {
     const std::string path = write_raster(folder / "a.tif", {.type = type}, value);
-    return note_on_likely_roads(path, {});
+    RasterFile file(path, {});
+    return note_on_likely_roads(file);
   };
   const auto mask = [](int, int col, int) { return col < 31 ? 255.0 : 0.0; };
   const auto share = [](int, int col, int) { return col / 64.0; };
@@ -311,6 +343,17 @@ TEST(Imagery, ThatLooksLikeAMaskOrProbabilitiesGetsANote) {
   EXPECT_EQ(note(GDT_Byte, picture), std::nullopt);
   EXPECT_EQ(note(GDT_Float32, picture), std::nullopt);
   EXPECT_EQ(note(GDT_Byte, [](int, int, int) { return 7.0; }), std::nullopt);
+}
+
+TEST(Imagery, ThatLooksLikeAMaskWithAPaletteGetsANote) {
+  const testing::TemporaryFolder folder;
+  const auto note = [&](int colours) {
+    const RasterSpec spec{.palette = {{0, 0, 0, 255}, {250, 250, 250, 255}, {90, 120, 60, 255}}};
+    RasterFile file(write_raster(folder / "a.tif", spec, [=](int, int col, int) { return col / 8 % colours; }), {});
+    return note_on_likely_roads(file);
+  };
+  EXPECT_THAT(note(2), ::testing::Optional(::testing::HasSubstr("0 and 1, as those of a mask")));
+  EXPECT_EQ(note(3), std::nullopt);
 }
 
 }  // namespace

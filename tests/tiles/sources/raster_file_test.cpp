@@ -74,10 +74,26 @@ TEST_F(RasterFileTest, AlphaOfSixteenBitsIsAsOpaqueAsItsLargestValueSays) {
     }
   }
   const RasterSpec spec{.bands = 2, .type = GDT_UInt16, .meanings = {GCI_GrayIndex, GCI_AlphaBand}};
-  const RasterPixels graded = read(spec, [](int, int col, int) { return 1000.0 * col; });
-  EXPECT_EQ(cv::countNonZero(graded.valid), (63 - 32) * 64) << "half of 65535 lies at column 32.8";
+  const RasterPixels graded = read(spec, [](int, int col, int) { return 10000.0 * std::min(col, 6); });
+  EXPECT_EQ(cv::countNonZero(graded.valid), (64 - 4) * 64) << "half of 65535 lies at column 3.3";
   const RasterPixels clear = read(spec, [](int band, int, int) { return band == 1 ? 77.0 : 0.0; });
   EXPECT_EQ(cv::countNonZero(clear.valid), 0);
+}
+
+TEST_F(RasterFileTest, NearInfraredThatIsMarkedAsAlphaHidesNothingButItsZeros) {
+  for (const GDALDataType type : {GDT_Byte, GDT_UInt16, GDT_Float32}) {
+    const RasterSpec spec{
+        .bands = 4, .type = type, .meanings = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_AlphaBand}};
+    const double scale = type == GDT_Byte ? 1.0 : (type == GDT_UInt16 ? 15.0 : 1.0 / 255.0);
+    const RasterPixels pixels = read(spec, [=](int band, int col, int row) {
+      return band < 4 ? 77.0 * scale : (col < 16 ? 0.0 : (20 + (7 * col + 3 * row) % 200) * scale);
+    });
+    EXPECT_EQ(cv::countNonZero(pixels.valid), 48 * 64) << GDALGetDataTypeName(type);
+  }
+  const RasterSpec spec{.bands = 2, .meanings = {GCI_GrayIndex, GCI_AlphaBand}};
+  const RasterPixels rim = read(spec, [](int, int col, int) { return std::min(255, 16 * col); });
+  EXPECT_EQ(cv::countNonZero(rim.valid), (64 - 8) * 64)
+      << "a rim that fades out is none: it is half opaque at column 8";
 }
 
 TEST_F(RasterFileTest, AMaskBandMeansThatNothingIsThere) {

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
+#include "tiles/sources/band_colours.hpp"
 #include "tiles/sources/road_values.hpp"
 
 namespace roadfix {
@@ -13,12 +16,11 @@ namespace {
 
 std::optional<std::string> note_on_colours(const RasterFile& file) {
   GDALDataset& dataset = file.dataset();
+  const std::array<int, 3> colours = colour_bands(dataset);
+  const std::ptrdiff_t named = std::ranges::count_if(colours, [](int i) { return i > 0; });
   int bands = 0;
-  int named = 0;
   for (int i = 1; i <= dataset.GetRasterCount(); ++i) {
-    const GDALColorInterp meaning = dataset.GetRasterBand(i)->GetColorInterpretation();
-    named += meaning == GCI_RedBand || meaning == GCI_GreenBand || meaning == GCI_BlueBand ? 1 : 0;
-    bands += meaning == GCI_AlphaBand ? 0 : 1;
+    bands += dataset.GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand ? 0 : 1;
   }
   if (named >= 3 || bands < 3 || (named == 0 && bands == 3)) return std::nullopt;
   const std::string unsaid = named == 0

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
+#include "tiles/sources/band_colours.hpp"
 #include "tiles/sources/nodata.hpp"
 #include "tiles/sources/picture_range.hpp"
 #include "tiles/sources/raster_reference.hpp"
@@ -57,15 +58,12 @@ RasterFile::RasterFile(std::string path, const RasterOptions& options, std::opti
 }
 
 void RasterFile::find_bands() {
-  std::array<int, 3> by_colour{0, 0, 0};  // blue, green, red
+  const std::array<int, 3> by_colour = colour_bands(*dataset_);
   std::vector<int> opaque;
   for (int i = 1; i <= dataset_->GetRasterCount(); ++i) {
-    const GDALColorInterp meaning = dataset_->GetRasterBand(i)->GetColorInterpretation();
-    if (meaning == GCI_BlueBand) by_colour[0] = i;
-    if (meaning == GCI_GreenBand) by_colour[1] = i;
-    if (meaning == GCI_RedBand) by_colour[2] = i;
-    if (meaning == GCI_AlphaBand) alpha_band_ = i;
-    if (meaning != GCI_AlphaBand) opaque.push_back(i);
+    const bool alpha = dataset_->GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand;
+    if (alpha) alpha_band_ = i;
+    if (!alpha) opaque.push_back(i);
   }
   if (opaque.empty()) opaque.push_back(1);
   if (std::ranges::all_of(by_colour, [](int i) { return i > 0; })) {

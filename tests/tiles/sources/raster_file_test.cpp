@@ -45,6 +45,28 @@ TEST_F(RasterFileTest, ColourMeaningsOfTheBandsWinOverTheirOrder) {
   EXPECT_EQ(read(spec, band_number).values.at<cv::Vec3b>(5, 5), cv::Vec3b(10, 20, 30));
 }
 
+TEST_F(RasterFileTest, DescriptionsOfBandsAreColoursWhereTheirMeaningsAreNot) {
+  const auto seen = [&](const std::vector<GDALColorInterp>& meanings, const std::vector<const char*>& names) {
+    const std::string path = write_raster(folder / "a.tif", {.bands = 4, .meanings = meanings}, band_number);
+    {
+      const DatasetPtr file(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_UPDATE));
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        file->GetRasterBand(static_cast<int>(i) + 1)->SetDescription(names[i]);
+      }
+    }
+    RasterFile file(path, {});
+    return file.read({0, 0, 1, 1}, {}).values.at<cv::Vec3b>(0, 0);
+  };
+  constexpr GDALColorInterp kNone = GCI_Undefined;
+  const std::vector unsaid{GCI_GrayIndex, kNone, kNone, kNone};
+  EXPECT_EQ(seen(unsaid, {"Blue", "Green", "Red", "NIR"}), cv::Vec3b(10, 20, 30));
+  EXPECT_EQ(seen(unsaid, {"nir", "red", "green", "blue"}), cv::Vec3b(40, 30, 20));
+  EXPECT_EQ(seen(unsaid, {"Blue", "Green", "Band 3", "NIR"}), cv::Vec3b(30, 20, 10)) << "not all of them";
+  EXPECT_EQ(seen({GCI_RedBand, GCI_GreenBand, GCI_BlueBand, kNone}, {"Blue", "Green", "Red", "NIR"}),
+            cv::Vec3b(30, 20, 10))
+      << "what programs show";
+}
+
 TEST_F(RasterFileTest, AFourthBandThatIsNoAlphaIsLeftAside) {
   const RasterSpec spec{.bands = 4, .meanings = {GCI_RedBand, GCI_GreenBand, GCI_BlueBand, GCI_Undefined}};
   const RasterPixels pixels = read(spec, [](int band, int, int) { return band == 4 ? 0.0 : 10.0 * band; });

@@ -121,6 +121,10 @@ std::string_view remedy_of_pixels(std::string_view reason) {
   if (says("No such file")) {
     return "an image that it is made of is missing: put it back, or make the file anew from those that are there";
   }
+  if (says("pixel function") || says("Python code")) {
+    return "a function computes them which is not known here or not trusted: make a GeoTIFF of them where it is "
+           "(gdal_translate)";
+  }
   if (says("JPEGMEM") || says("Backing store")) {
     return "a progressive JPEG is unpacked as a whole, and this one takes more memory than is allowed: allow it with "
            "the environment variable JPEGMEM, for example JPEGMEM=8000M";

@@ -137,10 +137,14 @@ bool RasterFile::unpacks_from_the_top() const {
 }
 
 RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
+  RasterPixels result{{}, read_opaque(window)};
+  if (cv::countNonZero(result.valid) == 0) {  // what a collar holds is not unpacked
+    result.values = cv::Mat::zeros(window.size(), CV_8UC(channels()));
+    return result;
+  }
   const bool bytes = declared_range().has_value();
   const cv::Mat raw = read_stored(window);
-  RasterPixels result;
-  result.valid = read_validity(window, raw);
+  clear_nothing(window, raw, result.valid);
   if (range.shares && !bytes && palette_.empty()) {
     require_shares(path_, extremes(raw, result.valid), range, holds_integers());
   }
@@ -222,11 +226,19 @@ AlphaScale RasterFile::sample_opacity() {
   return alpha_scale(samples, dataset_->GetRasterBand(alpha_band_)->GetRasterDataType());
 }
 
-cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
-  cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
-  if (alpha_band_ > 0 || has_mask_) valid = read_alpha(window) >= 0.5 * opacity().full;
+cv::Mat RasterFile::read_opaque(cv::Rect window) {
+  if (alpha_band_ > 0 || has_mask_) return read_alpha(window) >= 0.5 * opacity().full;
+  return {window.size(), CV_8UC1, cv::Scalar(255)};
+}
+
+void RasterFile::clear_nothing(cv::Rect window, const cv::Mat& values, cv::Mat& valid) const {
   clear_nodata(values, nodata_, valid);
   if (filled_) clear_beside(*filled_, window, valid);
+}
+
+cv::Mat RasterFile::read_validity(cv::Rect window, const cv::Mat& values) {
+  cv::Mat valid = read_opaque(window);
+  clear_nothing(window, values, valid);
   return valid;
 }
 

@@ -105,6 +105,10 @@ class RasterFile {
   cv::Mat read_stored(cv::Rect window);
   cv::Mat read_bands(cv::Rect window, int cv_depth, GDALDataType type);
   cv::Mat read_validity(cv::Rect window, const cv::Mat& values);
+  /// 255 where alpha or mask hide nothing.
+  cv::Mat read_opaque(cv::Rect window);
+  /// Makes 0 what is nodata, no number or in a gap.
+  void clear_nothing(cv::Rect window, const cv::Mat& values, cv::Mat& valid) const;
   [[noreturn]] void fail(cv::Rect window, const std::string& reason) const;
 
   std::string path_;

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <limits>
+#include <string>
 #include <string_view>
 
 #include "core/units/error.hpp"
@@ -122,6 +123,24 @@ TEST_F(RasterFileTest, AMaskBandMeansThatNothingIsThere) {
   const RasterPixels pixels = read({.bands = 3}, band_number, [](int col, int) { return col >= 16; });
   EXPECT_EQ(cv::countNonZero(pixels.valid), 48 * 64);
   EXPECT_EQ(pixels.valid.at<std::uint8_t>(0, 15), 0);
+}
+
+TEST_F(RasterFileTest, WhatAMaskHidesIsNotUnpacked) {
+  const RasterSpec spec{.width = 128, .creation = {"TILED=YES", "BLOCKXSIZE=64", "BLOCKYSIZE=64", "COMPRESS=DEFLATE"}};
+  const std::string path = write_raster(
+      folder / "a.tif", spec, [](int, int col, int row) { return (7 * col + row) % 200; },
+      [](int col, int) { return col >= 64; });
+  {
+    const long first_block =
+        std::stol(open_dataset(path, GDAL_OF_RASTER)->GetRasterBand(1)->GetMetadataItem("BLOCK_OFFSET_0_0", "TIFF"));
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(first_block);
+    file << std::string(16, '\xff');
+  }
+  RasterFile file(path, {});
+  EXPECT_EQ(cv::countNonZero(file.read({0, 0, 64, 64}, {}).valid), 0);
+  EXPECT_EQ(file.read({64, 0, 64, 64}, {}).values.at<std::uint8_t>(3, 2), (7 * 66 + 3) % 200);
+  EXPECT_EQ(code_of([&] { file.read({32, 0, 64, 64}, {}); }), "image-unreadable-block");
 }
 
 TEST_F(RasterFileTest, APixelHoldsNothingOnlyWhereEveryBandHasTheNodataValue) {
@@ -319,6 +338,17 @@ TEST_F(RasterFileTest, AVrtWithoutItsImageSaysThatItIsMissing) {
   const std::string message = testing::message_of([&] { file.read({0, 0, 64, 64}, {}); });
   EXPECT_THAT(message, ::testing::HasSubstr("a.tif"));
   EXPECT_THAT(message, ::testing::HasSubstr("an image that it is made of is missing"));
+}
+
+TEST_F(RasterFileTest, AVrtThatComputesItsPixelsInAWayThatIsNotKnownSaysSo) {
+  write_raster(folder / "a.tif", {}, band_number);
+  const std::string path = (folder / "b.vrt").string();
+  std::ofstream(path) << R"(<VRTDataset rasterXSize="64" rasterYSize="64"><SRS>EPSG:32637</SRS>
+<GeoTransform>400000,1,0,4200064,0,-1</GeoTransform>
+<VRTRasterBand dataType="Byte" band="1" subClass="VRTDerivedRasterBand"><PixelFunctionType>mine</PixelFunctionType>
+<SimpleSource><SourceFilename relativeToVRT="1">a.tif</SourceFilename></SimpleSource></VRTRasterBand></VRTDataset>)";
+  RasterFile file(path, {});
+  EXPECT_THAT(testing::message_of([&] { file.read({0, 0, 8, 8}, {}); }), ::testing::HasSubstr("gdal_translate"));
 }
 
 TEST_F(RasterFileTest, ProgressiveJpegsMayTakeAllMemoryUnlessTheEnvironmentForbidsIt) {

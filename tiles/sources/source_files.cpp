@@ -23,8 +23,9 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 9> kImageEndings{".tif", ".tiff", ".jpg", ".jpeg", ".png",
                                                         ".jp2", ".img",  ".vrt", ".webp"};
-constexpr std::array<std::string_view, 9> kVectorEndings{".shp", ".geojson", ".json", ".gpkg", ".pbf",
-                                                         ".osm", ".mvt",     ".fgb",  ".gdb"};
+constexpr std::array<std::string_view, 14> kVectorEndings{
+    ".shp",  ".shz",  ".geojson", ".geojsonl", ".geojsons", ".geojsonseq", ".ndjson",
+    ".json", ".gpkg", ".pbf",     ".osm",      ".mvt",      ".fgb",        ".gdb"};
 /// Of formats that GDAL reads too, but that are as often something else (a legend, a log, a preview): a folder's user
 /// hears of them and can name them.
 constexpr std::array<std::string_view, 18> kOtherEndings{".asc",     ".bil",  ".ecw", ".j2k", ".jpx",    ".kap",
@@ -75,7 +76,10 @@ bool seems_to_hold_vectors(const std::string& path) {
 bool is_vector_vrt(const std::string& path) { return ending_of(path) == ".vrt" && seems_to_hold_vectors(path); }
 
 /// What programs leave beside roads: settings, descriptions, answers of Overpass.
-bool is_other_json(const std::string& path) { return ending_of(path) == ".json" && !seems_to_hold_vectors(path); }
+bool is_other_json(const std::string& path) {
+  constexpr std::array<std::string_view, 2> kEndings{".json", ".ndjson"};
+  return one_of(kEndings, ending_of(path)) && !seems_to_hold_vectors(path);
+}
 
 struct FileKind {
   SourceKind kind = SourceKind::kRoadVectors;

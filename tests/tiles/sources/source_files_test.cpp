@@ -229,6 +229,18 @@ TEST_F(SourceFilesTest, OtherJsonBesideTheRoadsOfAFolderIsLeftOutAndNamed) {
   EXPECT_THAT(files.left_out, ElementsAre(about));
 }
 
+TEST_F(SourceFilesTest, GeoJsonOfALineForEachFeatureIsRoadsInAFolderToo) {
+  for (const char* ending : {"geojsonl", "geojsons", "geojsonseq", "ndjson"}) {
+    const testing::TemporaryFolder roads;
+    const std::string path = (roads / "lines.").string() + ending;
+    std::ofstream(path) << kLine << '\n' << kLine << '\n';
+    std::ofstream(roads / "log.ndjson") << R"({"level":"info"})" << '\n';
+    const SourceFiles files = find_source(roads.path().string());
+    EXPECT_THAT(files.paths, ElementsAre(path));
+    EXPECT_THAT(files.left_out, ElementsAre((roads / "log.ndjson").string()));
+  }
+}
+
 TEST_F(SourceFilesTest, AFileOfPixelsAndLinesIsPixelsUnlessALayerIsNamed) {
   const std::string path = (folder / "both.gpkg").string();
   std::ofstream(folder / "lines.geojson") << kLine;

@@ -15,6 +15,7 @@
 #include "core/units/error.hpp"
 #include "tiles/sources/prj_file.hpp"
 #include "tiles/sources/road_geometry.hpp"
+#include "tiles/sources/shapefile_records.hpp"
 #include "tiles/sources/temporary_files.hpp"
 
 namespace roadfix {
@@ -88,6 +89,7 @@ std::optional<VectorTile> vector_tile_of(const std::string& path) {
 VectorFile::VectorFile(const std::string& path, const VectorOptions& options)
     : path_(path), options_(options), tile_(vector_tile_of(path)), dataset_(open_in_known_crs(path, tile_, options)) {
   osm_ = EQUAL(dataset_->GetDriverName(), "OSM");
+  if (EQUAL(dataset_->GetDriverName(), "ESRI Shapefile")) require_as_many_records_as_shapes(*dataset_, path_);
   for (int i = 0; i < dataset_->GetLayerCount(); ++i) {
     OGRLayer* layer = dataset_->GetLayer(i);
     const std::string name = layer->GetName();

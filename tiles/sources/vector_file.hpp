@@ -28,7 +28,7 @@ std::optional<VectorTile> vector_tile_of(const std::string& path);
 
 class VectorFile {
  public:
-  /// Throws NotFound or InvalidInput ("source-unreadable").
+  /// Throws NotFound, InvalidInput ("source-unreadable") or CorruptData ("roads-unreadable").
   VectorFile(const std::string& path, const VectorOptions& options);
 
   const std::string& path() const { return path_; }

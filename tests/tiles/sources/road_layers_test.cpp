@@ -118,6 +118,27 @@ TEST_F(RoadLayers, OfAShapefileMayHaveTheirReferenceSystemInWkt2) {
   EXPECT_NEAR(centre_of_roads({path}, {}).lat_deg, kZone.unproject({400'050, 4'200'050}).lat_deg, 1e-6);
 }
 
+TEST_F(RoadLayers, OfAShapefileWhoseAttributesAreOfAnotherSaveAreRefused) {
+  require_gdal();
+  GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("ESRI Shapefile");
+  const auto save = [&](const std::string& name, const std::vector<std::string>& roads) {
+    const DatasetPtr from = open_dataset(geojson(roads), GDAL_OF_VECTOR);
+    const std::string path = (folder / (name + ".shp")).string();
+    DatasetPtr(driver.CreateCopy(path.c_str(), from.get(), FALSE, nullptr, nullptr, nullptr));
+    return path;
+  };
+  save("before", {road(0, 0)});
+  const std::string now = save("now", {road(0, 0), road(50, 0), road(100, 0)});
+  const auto lines = [&] { return read_road_network({now}, {}, RoadRules(), kZone).lines.size(); };
+  EXPECT_EQ(lines(), 3U);
+  std::filesystem::copy_file(folder / "before.dbf", folder / "now.dbf",
+                             std::filesystem::copy_options::overwrite_existing);
+  EXPECT_EQ(code_of(lines), "roads-unreadable");
+  EXPECT_THAT(message_of(lines), HasSubstr("now.shx holds 3 shapes"));
+  std::filesystem::remove(folder / "now.dbf");
+  EXPECT_EQ(lines(), 3U) << "without attributes all are drawn";
+}
+
 TEST_F(RoadLayers, OfAGeoPackageThatLeavesTheirReferenceSystemOpenNeedOne) {
   const std::string file = street();
   {

@@ -40,10 +40,9 @@ std::vector<bool> fallen(const std::vector<Building>& buildings, double share, R
 }
 
 void pitch_tents(Plan& plan, const Site& site, int number, const Block& block, Random& random) {
-  const auto [west, east] = std::ranges::minmax(block.outline, {}, &PlanPoint::x);
-  const auto [north, south] = std::ranges::minmax(block.outline, {}, &PlanPoint::y);
+  const cv::Rect2d box = box_of(block.outline);
   const Footprint camp{
-      {random.uniform(west.x, east.x), random.uniform(north.y, south.y)}, random.uniform(0.0, 3.1), 0.0, 0.0};
+      {random.uniform(box.x, box.br().x), random.uniform(box.y, box.br().y)}, random.uniform(0.0, 3.1), 0.0, 0.0};
   const Colour cloth = random.chance(0.8) ? Colour(232, 230, 224) : Colour(120, 150, 190);
   const int along = random.integer(3, 8);
   const int across = random.integer(2, 6);

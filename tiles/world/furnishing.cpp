@@ -45,23 +45,20 @@ class Gardener {
   }
 
   void clumps(int number, const Block& block) {
-    const auto [west, east] = std::ranges::minmax(block.outline, {}, &PlanPoint::x);
-    const auto [north, south] = std::ranges::minmax(block.outline, {}, &PlanPoint::y);
-    const double box_m2 = (east.x - west.x) * (south.y - north.y);
-    const int count = static_cast<int>(box_m2 / 1000.0 * clumps_per_1000_m2(block.use) + random_.unit());
+    const cv::Rect2d box = box_of(block.outline);
+    const int count = static_cast<int>(box.area() / 1000.0 * clumps_per_1000_m2(block.use) + random_.unit());
     for (int i = 0; i < count; ++i) {
-      const PlanPoint at = any_point({west.x, north.y, east.x - west.x, south.y - north.y}, random_);
+      const PlanPoint at = any_point(box, random_);
       if (site_.block_at(at) == number) clump(number, at);
     }
   }
 
   void orchard(int number, const Block& block) {
-    const auto [west, east] = std::ranges::minmax(block.outline, {}, &PlanPoint::x);
-    const auto [north, south] = std::ranges::minmax(block.outline, {}, &PlanPoint::y);
+    const cv::Rect2d box = box_of(block.outline);
     const double angle = random_.uniform(0.0, 1.57);
     const double spacing = random_.uniform(5.0, 8.5);
-    const double reach = std::hypot(east.x - west.x, south.y - north.y) / 2.0;
-    const Footprint grid{{(west.x + east.x) / 2.0, (north.y + south.y) / 2.0}, angle, 0.0, 0.0};
+    const double reach = std::hypot(box.width, box.height) / 2.0;
+    const Footprint grid{(box.tl() + box.br()) / 2.0, angle, 0.0, 0.0};
     for (double u = -reach; u < reach; u += spacing) {
       for (double v = -reach; v < reach; v += spacing) {
         const PlanPoint off = offset(0.4, 0.4, random_);

@@ -8,6 +8,7 @@
 #include "core/units/error.hpp"
 #include "tiles/sources/road_lines.hpp"
 #include "tiles/sources/source_files.hpp"
+#include "tiles/world/polygon.hpp"
 #include "tiles/world/street_network.hpp"
 
 namespace roadfix::world {
@@ -25,9 +26,8 @@ Polyline plan_line(const RoadNetwork& network, const RoadLine& road, const Place
 }
 
 bool touches(const Polyline& line, const cv::Rect2d& area) {
-  const auto [west, east] = std::ranges::minmax(line, {}, &PlanPoint::x);
-  const auto [north, south] = std::ranges::minmax(line, {}, &PlanPoint::y);
-  return east.x >= area.x && west.x <= area.x + area.width && south.y >= area.y && north.y <= area.y + area.height;
+  const cv::Rect2d box = box_of(line);
+  return box.br().x >= area.x && box.x <= area.br().x && box.br().y >= area.y && box.y <= area.br().y;
 }
 
 cv::Rect2d picture(const Placement& placement, double margin_m) {

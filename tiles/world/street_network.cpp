@@ -59,11 +59,10 @@ class Layout {
 
  private:
   bool outside(const Polyline& polygon) const {
-    const auto [west, east] = std::ranges::minmax(polygon, {}, &PlanPoint::x);
-    const auto [north, south] = std::ranges::minmax(polygon, {}, &PlanPoint::y);
     constexpr double kMarginM = 150.0;
-    return east.x < -kMarginM || south.y < -kMarginM || west.x > plan_.width_m + kMarginM ||
-           north.y > plan_.height_m + kMarginM;
+    const cv::Rect2d box = box_of(polygon);
+    return box.br().x < -kMarginM || box.br().y < -kMarginM || box.x > plan_.width_m + kMarginM ||
+           box.y > plan_.height_m + kMarginM;
   }
 
   /// Ground that is not split any further: small blocks in the middle, larger ones outwards, fields at the rim.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "cli/evaluation/frame_altitude.hpp"
 #include "cli/evaluation/frame_files.hpp"
 #include "cli/fly/vehicle.hpp"
 #include "core/detect/frame.hpp"
@@ -67,22 +68,14 @@ void require_there(const std::filesystem::path& folder, const Sequence& sequence
   }
 }
 
-std::optional<Altitude> altitude_of(const FrameTruth& truth, const GridPose& pose, const RecordingOptions& options) {
-  const auto* camera = std::get_if<FrameCamera>(&truth.view);
-  if (camera == nullptr) return std::nullopt;
-  if (!truth.alt_m) return Altitude{std::nullopt, camera->agl_m};
-  return said_of(truth.file.string(), [&] {
-    return Altitude{truth.alt_m, options.agl_m(pose.position, *truth.alt_m)};
-  });
-}
-
 RecordedFrame recorded(const std::filesystem::path& folder, FrameTruth truth, double time_s, const UtmZone& zone,
                        const RecordingOptions& options) {
   const FramePixels picture = evaluation::read_frame(folder, truth, options.border);
   RecordedFrame frame;
   frame.truth = on_grid(truth.pose, zone);
   frame.time_s = time_s;
-  frame.altitude = altitude_of(truth, frame.truth, options);
+  frame.altitude = evaluation::altitude_of(
+      truth, [&](double above_sea_m) { return options.agl_m(frame.truth.position, above_sea_m); });
   if (frame.altitude) std::get<FrameCamera>(truth.view).agl_m = frame.altitude->agl_m;
   frame.footprint = evaluation::footprint_of(picture, truth);
   if (options.detector != nullptr) {

@@ -152,7 +152,6 @@ std::optional<SourceShift> shift_of(const SharedEvidence& shared_evidence, doubl
 
 ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sources, const OnProgress& progress,
                            const std::stop_token& stop) {
-  constexpr std::int64_t kTiles = 64;
   const std::int64_t total = std::ssize(sources);
   std::int64_t done = 0;
   const auto tell = [&] {
@@ -171,7 +170,7 @@ ShiftReport measure_shifts(MapWriter& writer, const std::set<std::string>& sourc
     }
     try {
       const auto [copies, others] = witnesses.around(source);
-      const SharedEvidence shared = writer.shared_evidence(source, others, kTiles);
+      const SharedEvidence shared = writer.shared_evidence(source, others, kTilesCompared);
       const auto shift = shift_of(shared, writer.settings().cell_m);
       measured.emplace(source, shift);
       if (shift) result.shifted.insert({source, {*shift, shared.own_sigma_m}});

@@ -70,10 +70,9 @@ bool is_copy(const SharedEvidence& shared) {
 }
 
 bool Witnesses::are_one(const std::string& one, const std::string& other) {
-  constexpr std::int64_t kTiles = 64;
   const std::pair<std::string, std::string> both = std::minmax(one, other);
   if (const auto known = known_.find(both); known != known_.end()) return known->second;
-  const bool copy = is_copy(writer_->shared_evidence(both.first, std::vector<Witness>{{both.second}}, kTiles));
+  const bool copy = is_copy(writer_->shared_evidence(both.first, std::vector<Witness>{{both.second}}, kTilesCompared));
   known_.emplace(both, copy);
   return copy;
 }

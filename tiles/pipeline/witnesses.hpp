@@ -3,6 +3,7 @@
 // counted, they would outvote a third source that is right.
 #pragma once
 
+#include <cstdint>
 #include <map>
 #include <string>
 #include <utility>
@@ -12,6 +13,9 @@
 #include "tiles/store/map_writer.hpp"
 
 namespace roadfix {
+
+/// Of the ground that sources share so many tiles are compared, evenly spread over it.
+inline constexpr std::int64_t kTilesCompared = 64;
 
 /// Whether the two sources in `shared` agree better than independent ones do.
 bool is_copy(const SharedEvidence& shared);

@@ -17,6 +17,7 @@
 #include "tiles/sources/exported_roads.hpp"
 #include "tiles/sources/georeference.hpp"
 #include "tiles/sources/picture_range.hpp"
+#include "tiles/sources/share_range.hpp"
 #include "tiles/sources/warp.hpp"
 
 namespace roadfix {
@@ -27,58 +28,6 @@ constexpr double kReachedPixels = 2.0;  // beyond an image, at most
 constexpr ValueRange kExportedBytes{0.0, 254.0};
 /// Windows one above the other that are read at a time by all threads together, or soon again.
 constexpr double kHeightsKept = 6.0;
-
-ValueRange share_range(const std::vector<float>& values, bool integers) {
-  if (!integers) return {0.0, 1.0};
-  const float largest = values.empty() ? 0.0F : *std::ranges::max_element(values);
-  if (largest <= 1.0F) return {0.0, 1.0};
-  return {0.0, largest <= 255.0F ? 255.0 : 65535.0};
-}
-
-/// What the sampled values of an image say of its range.
-struct Sampled {
-  float max = 0.0F;
-  bool mask = false;  ///< of 0 and the largest value alone
-};
-
-Sampled sampled_in(const std::vector<float>& values) {
-  const float max = values.empty() ? 0.0F : *std::ranges::max_element(values);
-  return {max, std::ranges::all_of(values, [max](float v) { return v == 0.0F || v == max; })};
-}
-
-/// Looks at all values of an image of shares where those of its samples are small: roads are few, and may all lie
-/// between them. Returns whether there are larger ones.
-bool look_beyond_samples(RasterFile& file, Sampled& sampled) {
-  if (!file.holds_integers() || file.has_palette()) return false;
-  const std::optional<ValueRange> declared = file.declared_range();
-  const float half = declared ? 127.0F : 32767.0F;  // of what the type can hold: above it nothing is open
-  if (sampled.max > half || (declared && declared->high <= 1.0)) return false;
-  const float largest = file.largest_value(half);
-  if (largest <= sampled.max) return false;
-  sampled.mask = sampled.mask && sampled.max <= 0.0F;
-  sampled.max = largest;
-  return true;
-}
-
-/// Whether some are 1, and none lies between 1 and the largest, which is more.
-bool are_ones_only(const std::vector<float>& values, float largest) {
-  const auto between = [&](float v) { return v > 1.0F && v < largest; };
-  return largest > 1.0F && std::ranges::find(values, 1.0F) != values.end() && std::ranges::none_of(values, between);
-}
-
-/// Those by which the range of shares is chosen and are_ones_only() tells, of however many.
-std::vector<float> telling_values(const std::vector<float>& values) {
-  if (values.empty()) return {};
-  const auto [min, max] = std::ranges::minmax(values);
-  std::vector<float> telling{min, max};
-  float above_one = max;
-  for (const float v : values) {
-    if (v > 1.0F) above_one = std::min(above_one, v);
-  }
-  telling.push_back(above_one);
-  if (std::ranges::find(values, 1.0F) != values.end()) telling.push_back(1.0F);
-  return telling;
-}
 
 /// What an image holds, as far as those of one source have to agree.
 struct Content {
@@ -142,7 +91,7 @@ struct Mosaic::Image {
   double gsd_m = 0.0;
   std::optional<ValueRange> declared;
   AlphaScale opacity = {};
-  Sampled sampled = {};
+  SampledShares sampled = {};
   bool exported = false;
   ValueRange range = {};
   std::shared_ptr<const Collar> collar = nullptr;
@@ -195,7 +144,7 @@ void Mosaic::add_image(const std::string& path, ThinnedValues& values) {
   if (rule_ == ValueRule::kPicture) notes_.add(file);
   if (!image.declared) {
     const std::vector<float> sample = file.sample_values();
-    image.sampled = sampled_in(sample);
+    image.sampled = sampled_shares(sample);
     values.add(rule_ == ValueRule::kPicture ? without_fill(sample) : telling_values(sample));
     if (rule_ == ValueRule::kShare && look_beyond_samples(file, image.sampled)) values.add({image.sampled.max});
   }

@@ -1,12 +1,12 @@
 #include "tiles/sources/fingerprint.hpp"
 
+#include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <filesystem>
-#include <memory>
 #include <set>
 #include <string_view>
 
@@ -22,12 +22,8 @@ namespace {
 constexpr vsi_l_offset kWholeBytes = vsi_l_offset{8} << 20;
 constexpr std::size_t kEndBytes = std::size_t{1} << 20;
 
-struct CloseFile {
-  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
-};
-
 void add_content(Fnv1a64& hash, const std::string& path, vsi_l_offset size) {
-  const std::unique_ptr<VSILFILE, CloseFile> file(VSIFOpenL(path.c_str(), "rb"));
+  const FilePtr file(VSIFOpenL(path.c_str(), "rb"));
   if (!file) throw IoFailure("source-unreadable", fmt::format("{}: cannot be read", path));
   const bool whole = size <= kWholeBytes;
   std::string bytes(whole ? static_cast<std::size_t>(size) : kEndBytes, '\0');
@@ -57,16 +53,15 @@ void add_with_side_files(const std::string& path, std::set<std::string>& files) 
   const GdalMessages messages;
   const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
   if (!dataset) return;
-  char** list = dataset->GetFileList();
-  for (char** entry = list; entry != nullptr && *entry != nullptr; ++entry) {
-    const std::string file = *entry;
+  const CPLStringList list(dataset->GetFileList(), TRUE);
+  for (int i = 0; i < list.size(); ++i) {
+    const std::string file = list[i];
     if (lower_case(std::filesystem::path(file).extension().string()) == ".vrt") {
       add_with_side_files(file, files);
     } else {
       files.insert(file);
     }
   }
-  CSLDestroy(list);
 }
 
 }  // namespace

@@ -25,10 +25,9 @@ thread_local GdalMessages* innermost = nullptr;
 
 /// The first bytes; fewer of a short file.
 std::string begin_of(const std::string& path) {
+  const FilePtr file(VSIFOpenL(path.c_str(), "rb"));
   std::string bytes(4096, '\0');
-  VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-  bytes.resize(file != nullptr ? VSIFReadL(bytes.data(), 1, bytes.size(), file) : 0);
-  if (file != nullptr) VSIFCloseL(file);
+  bytes.resize(file ? VSIFReadL(bytes.data(), 1, bytes.size(), file.get()) : 0);
   return bytes;
 }
 

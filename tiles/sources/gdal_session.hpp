@@ -1,6 +1,7 @@
 // GDAL as the rest of this module wants it: registered once, quiet, its errors turned into ours.
 #pragma once
 
+#include <cpl_vsi.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
@@ -41,6 +42,12 @@ struct CloseDataset {
   void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
 };
 using DatasetPtr = std::unique_ptr<GDALDataset, CloseDataset>;
+
+struct CloseFile {
+  void operator()(VSILFILE* file) const { VSIFCloseL(file); }
+};
+/// Of VSIFOpenL().
+using FilePtr = std::unique_ptr<VSILFILE, CloseFile>;
 
 /// Throws NotFound ("file-not-found") or InvalidInput ("source-unreadable") with GDAL's reason. `flags` and
 /// `open_options` are those of GDALOpenEx.

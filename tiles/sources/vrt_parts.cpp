@@ -1,5 +1,6 @@
 #include "tiles/sources/vrt_parts.hpp"
 
+#include <cpl_conv.h>
 #include <cpl_minixml.h>
 
 #include <algorithm>
@@ -16,7 +17,7 @@ namespace roadfix {
 namespace {
 
 /// 0 where there is none.
-double number_at(const CPLXMLNode* node, const char* path) { return std::atof(CPLGetXMLValue(node, path, "0")); }
+double number_at(const CPLXMLNode* node, const char* path) { return CPLAtof(CPLGetXMLValue(node, path, "0")); }
 
 const CPLXMLNode* band_of(const CPLXMLNode* root, int band) {
   const CPLXMLNode* child = CPLGetXMLNode(root, "VRTRasterBand");

@@ -6,12 +6,6 @@
 #include "core/units/utc_text.hpp"
 
 namespace roadfix::api {
-namespace {
-
-constexpr std::int64_t kFirstDateUs = 946'684'800'000'000;
-
-}  // namespace
-
 void continue_with(std::vector<ClaimedStretch>& stretches, const nlohmann::json& answer) {
   if (answer.contains("pose")) {
     const nlohmann::json& pose = answer.at("pose");

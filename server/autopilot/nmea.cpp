@@ -4,11 +4,10 @@
 
 #include <cmath>
 
+#include "core/units/utc_text.hpp"
+
 namespace roadfix::autopilot {
 namespace {
-
-/// Times before 2000 are those of a vehicle that does not know the date.
-constexpr std::int64_t kYear2000Us = 946'684'800'000'000;
 
 std::string sentence(const std::string& body) { return fmt::format("${}*{:02X}\r\n", body, nmea_checksum(body)); }
 
@@ -27,7 +26,7 @@ struct Utc {
 
 Utc utc_of(std::int64_t time_us) {
   namespace chrono = std::chrono;
-  if (time_us < kYear2000Us) return {};
+  if (time_us < kFirstDateUs) return {};
   const chrono::sys_time<chrono::microseconds> time{chrono::microseconds(time_us)};
   const auto day = chrono::floor<chrono::days>(time);
   const chrono::year_month_day date(day);

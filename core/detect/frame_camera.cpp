@@ -47,7 +47,7 @@ void validate(const FrameCamera& camera, cv::Size frame) {
       !camera.horizontal_fov || (camera.horizontal_fov->degrees() > 0.0 && camera.horizontal_fov->degrees() < 180.0),
       "fov_deg", "(0, 180) degrees");
   require_camera(!camera.focal_px || (*camera.focal_px > 0.0 && *camera.focal_px < 1e9), "focal_px", "(0, 1e9) pixels");
-  require_camera(camera.agl_m > 0.0 && camera.agl_m <= 20'000.0, "agl_m", "(0, 20000] metres");
+  require_camera(camera.agl_m > 0.0 && camera.agl_m <= kHighestAglM, "agl_m", "(0, 20000] metres");
   require_camera(std::abs(camera.assumed_roll().degrees()) <= 180.0, "roll_deg", "[-180, 180] degrees");
   require_camera(std::abs(camera.assumed_pitch().degrees()) <= 180.0, "pitch_deg", "[-180, 180] degrees");
   require_camera(

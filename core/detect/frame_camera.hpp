@@ -22,6 +22,9 @@ inline constexpr Angle kUntoldAttitudeSigma = Angle::degrees(5.0);
 /// Nobody who means it tells more.
 inline constexpr Angle kLargestAttitudeSigma = Angle::degrees(20.0);
 
+/// Above ground, of a frame that shows roads.
+inline constexpr double kHighestAglM = 20'000.0;
+
 /// What is known about the camera when the frame was taken.
 struct FrameCamera {
   /// Exactly one of the two is given: the field of view across the columns, of a lens without distortion, in (0, 180)
@@ -33,7 +36,7 @@ struct FrameCamera {
   std::optional<cv::Point2d> principal_px;
   LensModel lens = LensModel::kPerspective;
   std::vector<double> distortion;  ///< with a focal length; coefficients of the model, empty = none
-  double agl_m = 0.0;              ///< altitude above ground, in (0, 20000]
+  double agl_m = 0.0;              ///< altitude above ground, in (0, kHighestAglM]
   std::optional<Angle> roll;       ///< nullopt = unknown: taken as zero, with a larger error
   std::optional<Angle> pitch;
   /// Of roll and pitch, 1 sigma each, in (0, kLargestAttitudeSigma]; nullopt = as mostly where they are told, or not.

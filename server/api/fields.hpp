@@ -32,6 +32,7 @@ inline constexpr Range kPositive{0.0, std::numeric_limits<double>::max(), true};
 inline constexpr Range kLatitude{-90.0, 90.0};
 inline constexpr Range kLongitude{-180.0, 180.0};
 inline constexpr Range kDegrees{-360.0, 360.0};
+inline constexpr Range kMovement{-1e5, 1e5};  ///< metres ahead or to the right between two frames
 /// Integers up to here are told apart as JSON numbers; 2^53 and 2^53 + 1 are read as one.
 inline constexpr double kMaxExactInteger = 9007199254740991.0;
 

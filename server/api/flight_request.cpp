@@ -24,8 +24,7 @@ std::vector<std::uint8_t> picture_of(const json& frame, const std::string& place
 }
 
 BodyOffset offset_of(const json& frame, const std::string& place) {
-  constexpr Range kMetres{-1e5, 1e5};
-  return {number_within(frame, "forward_m", place, kMetres), number_within(frame, "right_m", place, kMetres),
+  return {number_within(frame, "forward_m", place, kMovement), number_within(frame, "right_m", place, kMovement),
           Angle::degrees(number_within(frame, "turn_deg", place, kDegrees))};
 }
 

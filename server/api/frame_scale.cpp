@@ -15,7 +15,6 @@ namespace {
 using http::InvalidField;
 
 constexpr Range kGsd{kFinestGsdM, kCoarsestGsdM};
-constexpr Range kHeight{0.0, 20'000.0, true};
 constexpr Range kQuarterTurn{-90.0, 90.0};
 constexpr Range kAttitudeSigma{0.0, kLargestAttitudeSigma.degrees(), true};
 constexpr std::array<Word<LensModel>, 2> kLenses{
@@ -45,7 +44,7 @@ std::optional<Angle> told_attitude_sigma(const Fields& fields) {
 
 FrameCamera told_camera(const Fields& fields) {
   FrameCamera camera;
-  camera.horizontal_fov = fields.optional_angle("fov_deg", {0.0, 179.0, true});
+  camera.horizontal_fov = fields.optional_angle("fov_deg", kFieldOfView);
   camera.focal_px = fields.optional_number("focal_px", kPositive);
   if (camera.horizontal_fov) refuse(fields, {"focal_px"}, "fov_deg: the focal length tells how wide the lens sees");
   if (!camera.horizontal_fov && !camera.focal_px) {
@@ -58,7 +57,7 @@ FrameCamera told_camera(const Fields& fields) {
     camera.principal_px = cv::Point2d(principal->at(0), principal->at(1));
   }
   camera.distortion = fields.optional_numbers("distortion", 4, 8).value_or(std::vector<double>());
-  camera.agl_m = fields.number("agl_m", kHeight);
+  camera.agl_m = fields.number("agl_m", kHeightAboveGround);
   camera.roll = fields.optional_angle("roll_deg", kQuarterTurn);
   camera.pitch = fields.optional_angle("pitch_deg", kQuarterTurn);
   camera.attitude_sigma = told_attitude_sigma(fields);
@@ -78,7 +77,7 @@ const std::vector<std::string>& frame_scale_fields() {
   return kFields;
 }
 
-std::optional<double> told_agl_m(const Fields& fields) { return fields.optional_number("agl_m", kHeight); }
+std::optional<double> told_agl_m(const Fields& fields) { return fields.optional_number("agl_m", kHeightAboveGround); }
 
 FrameScale parse_frame_scale(const Fields& fields, std::span<const std::uint8_t> picture) {
   const bool exif = fields.flag("exif");

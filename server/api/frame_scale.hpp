@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/detect/frame_camera.hpp"
 #include "server/api/features.hpp"
 #include "server/api/fields.hpp"
 #include "tiles/sources/drone_picture.hpp"
@@ -16,6 +17,10 @@
 namespace roadfix::api {
 
 const std::vector<std::string>& frame_scale_fields();
+
+/// Of "fov_deg" and "agl_m".
+inline constexpr Range kFieldOfView{0.0, 179.0, true};
+inline constexpr Range kHeightAboveGround{0.0, kHighestAglM, true};
 
 /// Height above ground, where told. Throws InvalidField.
 std::optional<double> told_agl_m(const Fields& fields);

@@ -38,8 +38,7 @@ VehicleNoise parse_vehicle(const Fields& fields) {
 }
 
 Odometry parse_odometry(const Fields& fields) {
-  constexpr Range kMetres{-1e5, 1e5};
-  return {fields.number("forward_m", kMetres), fields.number("right_m", kMetres),
+  return {fields.number("forward_m", kMovement), fields.number("right_m", kMovement),
           Angle::degrees(fields.number("turn_deg", kDegrees)).wrapped()};
 }
 

@@ -17,6 +17,7 @@
 #include "server/api/fields.hpp"
 #include "server/api/fix_json.hpp"
 #include "server/api/fix_request.hpp"
+#include "server/api/frame_scale.hpp"
 #include "server/api/json_parts.hpp"
 #include "server/api/localizability_picture.hpp"
 #include "server/api/route_json.hpp"
@@ -66,13 +67,11 @@ constexpr std::size_t kLongestRoute = std::size_t{1} << 20;  // bytes
 constexpr int kMostPlaces = 1000;
 constexpr api::Range kRouteLength{0.0, 2e7};  // metres: half around the Earth
 
-constexpr api::Range kFov{0.0, 179.0, true};
 constexpr api::Range kAspect{0.1, 10.0};
-constexpr api::Range kHeight{0.0, 20'000.0, true};
 
 /// The footprint, or a camera from whose height it follows.
 void read_footprint(const api::Fields& fields, RouteSurveyOptions& options) {
-  const auto fov = fields.optional_angle("fov_deg", kFov);
+  const auto fov = fields.optional_angle("fov_deg", api::kFieldOfView);
   if (!fov) {
     for (const char* name : {"aspect", "agl_m"}) {
       if (fields.has(name)) {
@@ -87,7 +86,7 @@ void read_footprint(const api::Fields& fields, RouteSurveyOptions& options) {
   }
   options.camera = DownwardCamera{*fov};
   options.camera->aspect = fields.optional_number("aspect", kAspect).value_or(options.camera->aspect);
-  options.usual_agl_m = fields.optional_number("agl_m", kHeight);
+  options.usual_agl_m = fields.optional_number("agl_m", api::kHeightAboveGround);
 }
 
 routes::Route route_in(const http::Request& request) {

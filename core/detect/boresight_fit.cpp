@@ -1,7 +1,6 @@
 #include "core/detect/boresight_fit.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 

@@ -1,6 +1,5 @@
 #include "core/locate/particle_matches.hpp"
 
-#include <cmath>
 #include <utility>
 
 #include "core/grid/resample.hpp"

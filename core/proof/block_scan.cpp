@@ -1,7 +1,6 @@
 #include "core/proof/block_scan.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <optional>
 

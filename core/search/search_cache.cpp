@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cmath>
 #include <exception>
-#include <string_view>
 
 #include "core/units/fnv.hpp"
 

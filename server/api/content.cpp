@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <utility>
 
 #include "core/units/bytes.hpp"
 #include "server/api/base64.hpp"

@@ -1,6 +1,5 @@
 #include "server/api/localizability_picture.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>

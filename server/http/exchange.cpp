@@ -10,7 +10,6 @@
 #include <ctime>
 #include <optional>
 #include <string_view>
-#include <vector>
 
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"

@@ -8,7 +8,6 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "core/grid/lattice.hpp"
 #include "core/units/error.hpp"

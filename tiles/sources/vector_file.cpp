@@ -7,10 +7,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <regex>
-#include <utility>
 
 #include "core/units/error.hpp"
 #include "tiles/sources/prj_file.hpp"

@@ -1,6 +1,5 @@
 #include "tiles/world/country_survey.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,5 @@
 #include "tiles/world/farmsteads.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "tiles/world/corridor.hpp"

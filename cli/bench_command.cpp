@@ -90,18 +90,13 @@ struct Readers {
 };
 
 nlohmann::json document(const BenchArguments& arguments, const Readers& readers,
-                        const std::vector<bench::SetResult>& results, const std::vector<std::string>& left_out) {
+                        const std::vector<bench::SetResult>& results, const bench::Honesty& honesty,
+                        const std::vector<std::string>& left_out) {
   nlohmann::json sets = nlohmann::json::array();
   for (const auto& result : results) sets.push_back(to_json(result));
-  return {{"roadfix", ROADFIX_VERSION},
-          {"manifest", arguments.manifest},
-          {"seed", arguments.options.seed},
-          {"cell_m", arguments.cell_m},
-          {"detector", readers.frames},
-          {"map_detector", readers.maps},
-          {"honesty", to_json(bench::honesty_of(bench::road_outcomes(results)))},
-          {"left_out", left_out},
-          {"results", sets}};
+  return {{"roadfix", ROADFIX_VERSION},  {"manifest", arguments.manifest}, {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m},  {"detector", readers.frames},     {"map_detector", readers.maps},
+          {"honesty", to_json(honesty)}, {"left_out", left_out},           {"results", sets}};
 }
 
 /// What the calibration was learned from, for those who read the file.
@@ -156,6 +151,23 @@ void require_answers_to_learn_from(const BenchArguments& arguments, const bench:
                      "a calibration is learned from answers of 'roads', which is none of the methods: name it, too");
 }
 
+/// On `out`, and into the files that were asked for.
+void report(const BenchArguments& arguments, const bench::Manifest& manifest, const Readers& readers,
+            const std::vector<bench::SetResult>& results, const std::vector<std::string>& left_out, std::FILE* out) {
+  fmt::print(out, "detector {}, of maps {}\nseed {}, cells of {} m\n\n{}", readers.frames, readers.maps,
+             arguments.options.seed, arguments.cell_m, bench::to_table(results));
+  const std::vector<bench::Outcome> outcomes = bench::road_outcomes(results);
+  const bench::Honesty honesty = bench::honesty_of(outcomes);
+  fmt::print(out, "\n{}", bench::to_text(honesty));
+  if (!arguments.json_file.empty()) {
+    write_json(document(arguments, readers, results, honesty, left_out), arguments.json_file);
+  }
+  if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
+  const nlohmann::json origin = origin_of(arguments, manifest, left_out);
+  if (!arguments.calibrate_file.empty()) learn(arguments, origin, outcomes, out);
+  if (!arguments.calibrate_headings_file.empty()) learn_headings(arguments, origin, outcomes, out);
+}
+
 /// Of imagery.
 std::unique_ptr<RoadDetector> detector_of_maps(const BenchArguments& arguments) {
   DetectorChoice choice = arguments.detector;
@@ -197,19 +209,7 @@ void run_bench(BenchArguments& arguments) {
   options.left_out = [&](const std::string& why) { left_out.push_back(why); };
   const auto results = bench::run(manifest, options);
   const Readers readers{map_detector->describe(), detectors.describe()};
-  std::FILE* out = printed_beside(outputs);
-  fmt::print(out, "detector {}, of maps {}\nseed {}, cells of {} m\n\n{}", readers.frames, readers.maps, options.seed,
-             arguments.cell_m, bench::to_table(results));
-  const std::vector<bench::Outcome> outcomes = bench::road_outcomes(results);
-  const bench::Honesty honesty = bench::honesty_of(outcomes);
-  fmt::print(out, "\n{}", bench::to_text(honesty));
-  if (!arguments.json_file.empty()) {
-    write_json(document(arguments, readers, results, left_out), arguments.json_file);
-  }
-  if (!arguments.curves.empty()) draw(results, honesty, arguments.curves);
-  const nlohmann::json origin = origin_of(arguments, manifest, left_out);
-  if (!arguments.calibrate_file.empty()) learn(arguments, origin, outcomes, out);
-  if (!arguments.calibrate_headings_file.empty()) learn_headings(arguments, origin, outcomes, out);
+  report(arguments, manifest, readers, results, left_out, printed_beside(outputs));
   if (!left_out.empty()) {
     throw InvalidInput(
         "queries-left-out",

@@ -173,6 +173,10 @@ std::optional<OGREnvelope> RoadLayer::extent_seen() const {
 
 std::optional<DrawnFeature> RoadLayer::see(const OGRFeature& feature) {
   FeatureTags tags(feature, places_);
+  if (feature.GetGeometryRef() == nullptr || feature.GetGeometryRef()->IsEmpty() != FALSE) {
+    if (rules_.width_of(std::ref(tags), classified_)) ++counts_.without_geometry;
+    return std::nullopt;
+  }
   const OGRGeometry& geometry = *feature.GetGeometryRef();
   if (!holds_a_line(geometry)) {
     if (geometry.getDimension() == 2 && rules_.width_of(std::ref(tags), classified_)) ++areas_;

@@ -56,7 +56,7 @@ class RoadLayer {
   /// "no attributes" or "the attributes a, b", for messages.
   std::string attributes() const;
 
-  /// Takes note of a feature, whose geometry must not be null; nullopt to leave it out.
+  /// Takes note of a feature; nullopt to leave it out.
   std::optional<DrawnFeature> see(const OGRFeature& feature);
   /// Around all lines that tell where the roads were looked for, in the layer's own coordinates: where the layer has
   /// classes those of classes that the rules know, drawn or not, else all. nullopt where there was none.

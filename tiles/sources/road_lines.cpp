@@ -119,12 +119,13 @@ void add_file(const std::string& path, const VectorOptions& options, const RoadR
   }
   file.for_each_feature([&](OGRLayer& of, OGRFeature& feature) {
     const auto found = layers.find(&of);
-    const OGRGeometry* geometry = feature.GetGeometryRef();
-    if (found == layers.end() || geometry == nullptr) return;
-    ++parts.features;
+    if (found == layers.end()) return;
     RoadLayer& layer = found->second;
-    RoadNetwork& network = parts.of(layer).network;
     const std::optional<DrawnFeature> drawn = layer.see(feature);
+    const OGRGeometry* geometry = feature.GetGeometryRef();
+    if (geometry == nullptr) return;
+    ++parts.features;
+    RoadNetwork& network = parts.of(layer).network;
     if (!drawn ||
         !add_geometry(*geometry, layer.to_plane(), {drawn->width_m, index_of(drawn->road_class, network)}, network)) {
       ++network.left_out;

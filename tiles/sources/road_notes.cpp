@@ -58,6 +58,14 @@ void note_impossible_lines(const LineCounts& counts, RoadNetwork& network) {
                   counts.impossible, counts.lines + counts.impossible, counts.first_impossible));
 }
 
+void note_lines_without_geometry(const LineCounts& counts, RoadNetwork& network) {
+  if (counts.without_geometry == 0) return;
+  network.notes.push_back(fmt::format(
+      "{} of {} lines have no geometry and are left out, so that where they should lie counts as no road. If "
+      "they are roads, export them again",
+      counts.without_geometry, counts.lines + counts.impossible + counts.without_geometry));
+}
+
 /// A few squares are in every extract of OpenStreetMap; more areas are missing roads.
 void note_areas(RoadNetwork& network) {
   const std::size_t lines = network.lines.size();
@@ -92,6 +100,7 @@ void note_widths(const RoadRules& rules, RoadNetwork& network) {
 
 void add_notes(const LineCounts& counts, const RoadRules& rules, RoadNetwork& network) {
   note_impossible_lines(counts, network);
+  note_lines_without_geometry(counts, network);
   note_unknown_classes(counts, network);
   note_roads_without_class(counts, rules, network);
   note_areas(network);

@@ -296,6 +296,16 @@ TEST_F(RoadLines, DrawnByHandButNotClassifiedAreNotDrawnAndSaidSo) {
   EXPECT_THAT(notes({classified, river}), IsEmpty());
 }
 
+TEST_F(RoadLines, WithoutGeometriesAreLeftOutAndSaidSo) {
+  const auto nowhere = [](const std::string& road_class, const std::string& geometry) {
+    return fmt::format(R"({{"type":"Feature","properties":{{"highway":"{}"}},"geometry":{}}})", road_class, geometry);
+  };
+  const std::string empty = R"({"type":"LineString","coordinates":[]})";
+  EXPECT_THAT(notes({road(0, 0), road(50, 0), nowhere("footway", "null")}), IsEmpty()) << "it would not be drawn";
+  EXPECT_THAT(notes({road(0, 0), road(50, 0), nowhere("primary", "null"), nowhere("primary", empty)}),
+              ElementsAre(HasSubstr("2 of 4 lines have no geometry")));
+}
+
 TEST_F(RoadLines, OfAShapefileWithoutFeaturesAreNone) {
   const std::string path = (folder / "empty.shp").string();
   {

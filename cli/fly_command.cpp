@@ -78,6 +78,17 @@ void require_known_once(const std::vector<std::string>& filters, int particles) 
   }
 }
 
+/// Vehicles see the ground of the file, and are looked for on the map of the service.
+void note_other_map(const fly::ServicePlan& plan, const std::string& file, const std::string& version) {
+  const auto served = fly::served_version(plan);
+  if (!served || served == version) return;
+  fmt::print(
+      stderr,
+      "note: {} is another map (version {}) than the service has as '{}' (version {}): what it finds, and what it "
+      "does not, may be due to that\n",
+      file, version, plan.map, *served);
+}
+
 fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& map, const std::stop_token& stop) {
   fly::ServicePlan plan = options.service;
   plan.filter.vehicle = vehicle_of(options);
@@ -90,6 +101,7 @@ fly::LocalizerFactory localizers_of(const FlyOptions& options, const MapView& ma
   }
   if (plan.map.empty()) plan.map = std::filesystem::path(options.map).stem().string();
   plan.stop = stop;
+  note_other_map(plan, options.map, map.id.version);
   return fly::service_localizers(plan);
 }
 

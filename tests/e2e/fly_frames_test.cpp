@@ -100,6 +100,21 @@ TEST_F(FlownOverHttp, FramesAreAnsweredWithTheNumbersThatTheirRoadsAre) {
   }
 }
 
+TEST_F(FlownOverHttp, SaysWhereTheServiceHasAnotherMap) {
+  ASSERT_EQ(roadfix("ingest " + town() + "/post.tif --detector tree --map " + (folder_ / "other.gpkg").string()).code,
+            0);
+  const testing::ServiceProcess service(folder_.path(), {"--request-time", "600"});
+  const auto said_of = [&](const std::string& map) {
+    const ProgramResult result = roadfix("fly " + (folder_ / "town.gpkg").string() +
+                                         " --footprint-m 300 --steps 1 --runs 1 --particles 500 --map " + map +
+                                         " --server http://127.0.0.1:" + std::to_string(service.port()));
+    EXPECT_EQ(result.code, 0) << result.err;
+    return result.err;
+  };
+  EXPECT_THAT(said_of("other"), ::testing::HasSubstr("town.gpkg is another map (version "));
+  EXPECT_THAT(said_of("town"), ::testing::Not(::testing::HasSubstr("another map")));
+}
+
 TEST_F(FlownOverHttp, RecordedFramesOfACameraAreAnsweredWithTheNumbersThatTheirRoadsAre) {
   write_as_of_a_camera(town() + "/frames/frames.csv", town() + "/frames/camera.csv");
   const testing::ServiceProcess service(folder_.path(), {"--request-time", "600", "--tree-roots", "500"});

@@ -79,8 +79,8 @@ class CrownPainter {
     for (int i = 0; i < count; ++i) {
       const PlanPoint off = quirks_.within(r);
       const double light = 0.8 + 0.55 * quirks_.next() + 0.15 * off.dot(to_sun_) / r;
-      canvas_.disc(top_ + off, 0.3 + 0.35 * quirks_.next(), twig * light, Material::kLeaves,
-                   tree_.height_m * (0.5 + 0.5 * quirks_.next()));
+      const double height_m = tree_.height_m * (0.5 + 0.5 * quirks_.next());
+      canvas_.disc(top_ + off, 0.3 + 0.35 * quirks_.next(), twig * light, Material::kLeaves, height_m);
     }
   }
 

@@ -81,7 +81,8 @@ class ParcelPainter {
     blotches(1500.0, 0.2);
     const double deep = parcel_.cover == Cover::kPlough ? random_.uniform(0.0, 0.16) : random_.uniform(0.0, 0.11);
     const double spacing = random_.chance(0.3) ? random_.uniform(3.5, 9.0) : random_.uniform(1.2, 3.0);
-    draw({spacing, spacing * random_.uniform(0.3, 0.55), 0.0}, colour_ * (1.0 + (random_.chance(0.5) ? deep : -deep)));
+    const Colour furrow = colour_ * (1.0 + (random_.chance(0.5) ? deep : -deep));
+    draw({spacing, spacing * random_.uniform(0.3, 0.55), 0.0}, furrow);
     if (parcel_.cover == Cover::kCrop ? random_.chance(0.7) : random_.chance(0.3)) tractor_marks();
   }
 

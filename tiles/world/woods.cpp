@@ -55,10 +55,14 @@ class Forester {
         return wood(parcel);
       case Cover::kOrchard:
         return orchard(parcel);
-      case Cover::kScrub:
-        return scatter(parcel, random_.uniform(14.0, 90.0), shrubs());
-      case Cover::kMeadow:
-        return scatter(parcel, random_.uniform(500.0, 4000.0), any_stand());
+      case Cover::kScrub: {
+        const Stand stand = shrubs();
+        return scatter(parcel, random_.uniform(14.0, 90.0), stand);
+      }
+      case Cover::kMeadow: {
+        const Stand stand = any_stand();
+        return scatter(parcel, random_.uniform(500.0, 4000.0), stand);
+      }
       case Cover::kCrop:
       case Cover::kPlough:
       case Cover::kStubble:

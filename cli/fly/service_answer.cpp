@@ -15,7 +15,7 @@ using nlohmann::json;
 
 InvalidInput unreadable(const std::string& what) {
   return {"service-answer-unreadable",
-          "the service answered what no step of a track is answered (" + what + "): is it a Roadfix of this version?"};
+          "the service answered what no track is answered (" + what + "): is it a Roadfix of this version?"};
 }
 
 TrackCluster cluster_of(const json& value) {
@@ -66,6 +66,12 @@ TrackEstimate estimate_of(const json& answer) {
   }
   if (estimate.clusters.empty()) throw unreadable("no clusters");
   return estimate;
+}
+
+std::string track_id_of(const json& answer) {
+  const auto id = answer.find("id");
+  if (id != answer.end() && id->is_string()) return id->get<std::string>();
+  throw unreadable("no id");
 }
 
 std::vector<GeoPose> particles_of(const json& list) {

@@ -1,15 +1,19 @@
-// What a service answers to a step, read back.
+// What a service answers to a track that begins and to its steps, read back. All throw InvalidInput
+// "service-answer-unreadable".
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
 
 #include "core/locate/tracker.hpp"
 
 namespace roadfix::fly {
 
-/// Throws InvalidInput "service-answer-unreadable".
+/// Of the track that was begun.
+std::string track_id_of(const nlohmann::json& answer);
 TrackEstimate estimate_of(const nlohmann::json& answer);
-/// [[lon, lat, heading_deg], ...]. Throws as estimate_of.
+/// [[lon, lat, heading_deg], ...].
 std::vector<GeoPose> particles_of(const nlohmann::json& list);
 
 }  // namespace roadfix::fly

@@ -26,11 +26,17 @@ bool may_pass(const std::optional<Answer>& answer) {
   return !answer || std::ranges::find(kMayPass, answer->status) != kMayPass.end();
 }
 
+/// Other services' answers may hold anything there.
+std::string text_of(const json& problem, const char* member) {
+  const auto found = problem.find(member);
+  return found != problem.end() && found->is_string() ? found->get<std::string>() : "?";
+}
+
 std::string reason_of(const std::optional<Answer>& answer) {
   if (!answer) return "no answer";
   const json problem = json::parse(answer->body, nullptr, false);
   if (!problem.is_object()) return std::to_string(answer->status);
-  return fmt::format("{} {}: {}", answer->status, problem.value("code", "?"), problem.value("detail", "?"));
+  return fmt::format("{} {}: {}", answer->status, text_of(problem, "code"), text_of(problem, "detail"));
 }
 
 json content_of(const Answer& answer) {

@@ -27,10 +27,7 @@ class ServiceLocalizer : public Localizer {
     // Should the answer be lost, the track that was begun expires without a step.
     const json track =
         connection_.ask([&](http::Client& client) { return client.post("/v1/tracks", request, "application/json"); });
-    if (!track.is_object() || !track.contains("id")) {
-      throw InvalidInput("service-answer-unreadable", plan.base + " begins no tracks: is it a Roadfix service?");
-    }
-    path_ = "/v1/tracks/" + track.at("id").get<std::string>();
+    path_ = "/v1/tracks/" + track_id_of(track);
   }
 
   /// The track of a flight that failed or was stopped would count among its client's until it expires.

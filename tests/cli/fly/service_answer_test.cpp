@@ -93,5 +93,12 @@ TEST(ServiceAnswers, OfAnotherProgramAreRefused) {
   EXPECT_EQ(code_of([] { particles_of(json::parse("[[1, 2]]")); }), "service-answer-unreadable");
 }
 
+TEST(ServiceAnswers, ToATrackThatBeginsHaveItsId) {
+  EXPECT_EQ(track_id_of({{"id", "k3"}, {"map", "town"}}), "k3");
+  for (const json& other : {json({{"id", 3}}), json({{"map", "town"}}), json::array(), json("hello"), json()}) {
+    EXPECT_EQ(code_of([&] { track_id_of(other); }), "service-answer-unreadable") << other;
+  }
+}
+
 }  // namespace
 }  // namespace roadfix::fly

@@ -11,6 +11,7 @@ namespace roadfix::fly {
 namespace {
 
 using testing::code_of;
+using testing::message_of;
 
 /// What becomes of a request that is answered so, and then well; `asked` counts.
 class ServiceConnections : public ::testing::Test {
@@ -43,6 +44,13 @@ TEST_F(ServiceConnections, TakeAllOtherRefusalsForGood) {
     EXPECT_EQ(code_of([&] { asked_for(http::Answer{status, "", {}}); }), "service-refused");
     EXPECT_EQ(asked, 1) << status;
   }
+}
+
+TEST_F(ServiceConnections, TellOfARefusalOfAnotherServiceWhatIsTextInIt) {
+  const auto refused = [&](const char* body) { return message_of([&] { asked_for(http::Answer{403, body, {}}); }); };
+  EXPECT_EQ(refused(R"({"code":"map-locked","detail":"not now"})"), "the service refused: 403 map-locked: not now");
+  EXPECT_EQ(refused(R"({"code":7,"detail":["not","now"]})"), "the service refused: 403 ?: ?");
+  EXPECT_EQ(refused("[7]"), "the service refused: 403");
 }
 
 TEST_F(ServiceConnections, GiveUpWhenPatienceIsAtItsEnd) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <memory>
+#include <utility>
 
 #include "core/grid/resample.hpp"
 #include "core/match/footprint.hpp"
@@ -39,19 +40,11 @@ class BoundedCase {
       paste(CellArray(4 + below(16), 4 + below(16)), map_.cells, below(geometry.cols), below(geometry.rows));
     }
     make_features(seed);
-    positions_ = geometry;
-    const int reach = footprint_reach(features_) + BoundMap::kBorder;
-    const CellArray wide = padded(map_.cells, reach);
-    const LatticeIndex origin{geometry.origin.col - reach, geometry.origin.row - reach};
-    bound_map_ = std::make_unique<BoundMap>(RoadGrid{{4.0, origin, wide.cols(), wide.rows()}, wide});
-    search.map = bound_map_.get();
-    search.features = &features_;
-    search.bins = HeadingBins::for_footprint(2.0 * std::max(features_.cells.cols(), features_.cells.rows()), 4.0);
-    for (int bin = 0; bin < search.bins.count(); ++bin) search.headings.push_back(bin);
-    search.positions = positions_;
-    const bool part = seed % 5 == 0;
-    search.eligible = [part](int col, int row) { return !part || (col + 2 * row) % 7 < 4; };
-    search.cells = footprint_cells(features_);
+    prepare(seed % 5 == 0);
+  }
+  /// Whatever the map and the feature map are.
+  BoundedCase(RoadGrid map, FeatureMap features) : map_(std::move(map)), features_(std::move(features)) {
+    prepare(false);
   }
   BoundedCase(const BoundedCase&) = delete;
   BoundedCase& operator=(const BoundedCase&) = delete;
@@ -85,6 +78,23 @@ class BoundedCase {
 
  private:
   int below(int n) { return static_cast<int>(random_() % static_cast<std::uint64_t>(n)); }
+
+  /// `part`: not all positions are eligible.
+  void prepare(bool part) {
+    const GridGeometry& geometry = map_.geometry;
+    positions_ = geometry;
+    const int reach = footprint_reach(features_) + BoundMap::kBorder;
+    const CellArray wide = padded(map_.cells, reach);
+    const LatticeIndex origin{geometry.origin.col - reach, geometry.origin.row - reach};
+    bound_map_ = std::make_unique<BoundMap>(RoadGrid{{4.0, origin, wide.cols(), wide.rows()}, wide});
+    search.map = bound_map_.get();
+    search.features = &features_;
+    search.bins = HeadingBins::for_footprint(2.0 * std::max(features_.cells.cols(), features_.cells.rows()), 4.0);
+    for (int bin = 0; bin < search.bins.count(); ++bin) search.headings.push_back(bin);
+    search.positions = positions_;
+    search.eligible = [part](int col, int row) { return !part || (col + 2 * row) % 7 < 4; };
+    search.cells = footprint_cells(features_);
+  }
 
   /// Of doubtful, likely and certain road: neighbouring places with as much of it differ in how sure it is.
   CellArray patches(int cols, int rows) {

@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+#include <utility>
+
 #include "tests/core/proof/bounded_case.hpp"
 
 namespace roadfix {
@@ -22,6 +26,28 @@ TEST(BranchAndBound, HoldsWherePositionsOfABlockDifferInHowSureTheirRoadsAre) {
   for (const std::uint64_t seed : {571U, 579U, 639U, 1851U}) {
     SCOPED_TRACE(seed);
     testing::expect_brute_force_agrees(BoundedCase(seed));
+  }
+}
+
+// Blocks of 4 x 4 positions are bounded in tiles of 64 x 16 blocks: here the last column and row begin tiles of their
+// own.
+TEST(BranchAndBound, FindsTheBestPoseOfEachRowAndColumnOfAMapOfSeveralTiles) {
+  const RoadGrid map = testing::grid_city({4.0, {1003, -1001}, 257, 129}, 70.0);
+  std::mt19937_64 random(5);
+  const GridPose pose{map.geometry.cell_center(128, 64), Angle::degrees(40.0)};
+  BoundedCase given(map, testing::observed_at(map, pose, 14, 10, 4.0, {0.2, 0.2}, random));
+  const auto expect_best_among = [&](std::function<bool(int, int)> eligible) {
+    given.search.eligible = std::move(eligible);
+    EXPECT_GT(given.brute_force().score, 0.0);
+    testing::expect_brute_force_agrees(given);
+  };
+  for (int only = 0; only < map.geometry.rows; only += 4) {
+    SCOPED_TRACE(only);
+    expect_best_among([only](int, int row) { return row == only; });
+  }
+  for (const int only : {0, 128, 255, 256}) {
+    SCOPED_TRACE(only);
+    expect_best_among([only](int col, int) { return col == only; });
   }
 }
 

@@ -15,7 +15,7 @@ using nlohmann::json;
 
 InvalidInput unreadable(const std::string& what) {
   return {"service-answer-unreadable",
-          "the service answered what no track is answered (" + what + "): is it a Roadfix of this version?"};
+          "the service answered what none does that tracks vehicles (" + what + "): is it a Roadfix of this version?"};
 }
 
 TrackCluster cluster_of(const json& value) {
@@ -66,6 +66,19 @@ TrackEstimate estimate_of(const json& answer) {
   }
   if (estimate.clusters.empty()) throw unreadable("no clusters");
   return estimate;
+}
+
+std::optional<std::string> version_in(const json& answer, const std::string& map) {
+  const auto maps = answer.find("maps");
+  if (maps == answer.end() || !maps->is_array()) throw unreadable("no maps");
+  for (const json& one : *maps) {
+    const auto name = one.find("name");
+    const auto version = one.find("version");
+    if (name != one.end() && *name == map && version != one.end() && version->is_string()) {
+      return version->get<std::string>();
+    }
+  }
+  return std::nullopt;
 }
 
 std::string track_id_of(const json& answer) {

@@ -8,7 +8,6 @@
 #include "cli/fly/service_answer.hpp"
 #include "cli/fly/service_connection.hpp"
 #include "cli/fly/service_request.hpp"
-#include "core/units/error.hpp"
 #include "server/http/client.hpp"
 
 namespace roadfix::fly {
@@ -83,14 +82,7 @@ LocalizerFactory service_localizers(const ServicePlan& plan) {
 }
 
 std::optional<std::string> served_version(const ServicePlan& plan) {
-  const json list = ServiceConnection(plan).ask([](http::Client& client) { return client.get("/v1/maps"); });
-  if (!list.is_object() || !list.contains("maps")) {
-    throw InvalidInput("service-answer-unreadable", plan.base + " lists no maps: is it a Roadfix service?");
-  }
-  for (const json& map : list.at("maps")) {
-    if (map.value("name", "") == plan.map && map.contains("version")) return map.at("version").get<std::string>();
-  }
-  return std::nullopt;
+  return version_in(ServiceConnection(plan).ask([](http::Client& client) { return client.get("/v1/maps"); }), plan.map);
 }
 
 }  // namespace roadfix::fly

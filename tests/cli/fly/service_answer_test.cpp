@@ -93,6 +93,17 @@ TEST(ServiceAnswers, OfAnotherProgramAreRefused) {
   EXPECT_EQ(code_of([] { particles_of(json::parse("[[1, 2]]")); }), "service-answer-unreadable");
 }
 
+TEST(ServiceAnswers, HaveTheVersionsOfTheMaps) {
+  const json list = json::parse(R"({"maps": [7, {"name": "bad", "status": "unreadable"}, {"name": 3, "version": "c"},
+                                              {"name": "city", "version": "a"}, {"name": "town", "version": "b"}]})");
+  EXPECT_EQ(version_in(list, "town"), "b");
+  EXPECT_EQ(version_in(list, "bad"), std::nullopt);
+  EXPECT_EQ(version_in(list, "nowhere"), std::nullopt);
+  for (const json& other : {json({{"maps", 3}}), json::array(), json("hello"), json()}) {
+    EXPECT_EQ(code_of([&] { version_in(other, "town"); }), "service-answer-unreadable") << other;
+  }
+}
+
 TEST(ServiceAnswers, ToATrackThatBeginsHaveItsId) {
   EXPECT_EQ(track_id_of({{"id", "k3"}, {"map", "town"}}), "k3");
   for (const json& other : {json({{"id", 3}}), json({{"map", "town"}}), json::array(), json("hello"), json()}) {

@@ -9,14 +9,14 @@
 namespace roadfix {
 namespace {
 
-constexpr int kSide = 48;  // of the map, cells
+constexpr int kGroundSide = 48;  // of the map, cells
 
 /// Noise with a hole that was not observed.
 RoadGrid ground_with_a_hole() {
   std::mt19937_64 random(7);
-  CellArray cells = testing::smooth_cells(random, kSide, kSide);
+  CellArray cells = testing::smooth_cells(random, kGroundSide, kGroundSide);
   paste(CellArray(9, 6), cells, 20, 14);
-  return {{4.0, {0, 0}, kSide, kSide}, cells};
+  return {{4.0, {0, 0}, kGroundSide, kGroundSide}, cells};
 }
 
 /// The same, cell by cell.
@@ -32,7 +32,7 @@ GroundRange counted(const RoadGrid& ground, const BoundMap& map, const std::vect
       for (int i = run.first; i < run.end; ++i) {
         const int col = kBlockCells * block_col + position % kBlockCells + i;
         const int row = kBlockCells * block_row + position / kBlockCells + run.row;
-        const bool within = col >= 0 && row >= 0 && col < kSide && row < kSide;
+        const bool within = col >= 0 && row >= 0 && col < kGroundSide && row < kGroundSide;
         if (!within || !is_observed(ground.cells.at(col, row))) continue;
         const double above = ground.cells.at(col, row) - map.base();
         cells += 1.0;
@@ -53,9 +53,9 @@ TEST(GroundSums, AreThoseOfEveryCellBelowAFootprintAtEveryPositionOfABlock) {
   const BoundMap map(ground);
   const std::vector<RowRun> footprint{{-3, -2, 4}, {-2, -6, -1}, {-2, 1, 7}, {0, -5, 6}, {4, 0, 1}};
   constexpr int kReach = 7;
-  const GroundSums sums(map, -kReach, -kReach, kSide + 2 * kReach, kSide + 2 * kReach);
-  for (int block_row = 0; block_row < kSide / kBlockCells; ++block_row) {
-    for (int block_col = 0; block_col < kSide / kBlockCells; ++block_col) {
+  const GroundSums sums(map, -kReach, -kReach, kGroundSide + 2 * kReach, kGroundSide + 2 * kReach);
+  for (int block_row = 0; block_row < kGroundSide / kBlockCells; ++block_row) {
+    for (int block_col = 0; block_col < kGroundSide / kBlockCells; ++block_col) {
       SCOPED_TRACE(::testing::Message() << block_col << ' ' << block_row);
       const GroundRange expected = counted(ground, map, footprint, block_col, block_row);
       const GroundRange range = sums.below(footprint, block_col, block_row);

@@ -36,7 +36,8 @@ bool are_varied(const std::vector<float>& samples, double largest) {
   constexpr std::size_t kSteps = 50;
   std::array<std::size_t, kSteps + 1> counts{};
   std::size_t above_zero = 0;
-  for (const double value : samples) {
+  for (const float sample : samples) {
+    const auto value = static_cast<double>(sample);
     if (!(value > 0.0)) continue;
     ++above_zero;
     ++counts.at(static_cast<std::size_t>(std::lround(kSteps * (1.0 - value / largest))));
@@ -48,7 +49,7 @@ bool are_varied(const std::vector<float>& samples, double largest) {
 
 AlphaScale alpha_scale(const std::vector<float>& samples, GDALDataType type) {
   double largest = 0.0;
-  for (const double value : samples) largest = std::max(largest, value);
+  for (const float value : samples) largest = std::max(largest, static_cast<double>(value));
   AlphaScale scale{full_opacity(largest, type)};
   const auto is_graded = [&](double value) {
     return value > kFaint * scale.full && value < (1.0 - kFaint) * scale.full;

@@ -39,7 +39,7 @@ class LikelyRoads {
   }
   bool vary() const { return low_ < high_; }
   bool are_two() const { return two_; }
-  ValueRange seen() const { return {low_, high_}; }
+  ValueRange seen() const { return {static_cast<double>(low_), static_cast<double>(high_)}; }
 
  private:
   bool agrees(float value) {

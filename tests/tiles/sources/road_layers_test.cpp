@@ -123,8 +123,8 @@ TEST_F(RoadLayers, OfAShapefileWhoseAttributesAreOfAnotherSaveAreRefused) {
   GDALDriver& driver = *GetGDALDriverManager()->GetDriverByName("ESRI Shapefile");
   const auto save = [&](const std::string& name, const std::vector<std::string>& roads) {
     const DatasetPtr from = open_dataset(geojson(roads), GDAL_OF_VECTOR);
-    const std::string path = (folder / (name + ".shp")).string();
-    DatasetPtr(driver.CreateCopy(path.c_str(), from.get(), FALSE, nullptr, nullptr, nullptr));
+    std::string path = (folder / (name + ".shp")).string();
+    const DatasetPtr closed(driver.CreateCopy(path.c_str(), from.get(), FALSE, nullptr, nullptr, nullptr));
     return path;
   };
   save("before", {road(0, 0)});

@@ -1,7 +1,6 @@
 #include "tiles/sources/shapefile_records.hpp"
 
 #include <cpl_string.h>
-#include <cpl_vsi.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -23,11 +22,9 @@ constexpr std::size_t kHeader = 32;
 /// The first bytes of both kinds of file; nullopt of a shorter one.
 std::optional<std::array<std::uint8_t, kHeader>> header_of(const std::string& path) {
   std::array<std::uint8_t, kHeader> header{};
-  VSILFILE* const file = VSIFOpenL(path.c_str(), "rb");
-  if (file == nullptr) return std::nullopt;
-  const std::size_t read = VSIFReadL(header.data(), 1, header.size(), file);
-  VSIFCloseL(file);
-  return read == header.size() ? std::optional(header) : std::nullopt;
+  const FilePtr file(VSIFOpenL(path.c_str(), "rb"));
+  if (!file || VSIFReadL(header.data(), 1, header.size(), file.get()) < header.size()) return std::nullopt;
+  return header;
 }
 
 /// By an .shx: its length in words of 16 bits, the highest byte first; 100 bytes, and 8 for each shape.
@@ -54,7 +51,7 @@ void require_as_many_records_as_shapes(GDALDataset& shapefile, const std::string
   std::map<std::string, std::string> indexes;
   std::map<std::string, std::string> tables;
   const GdalMessages messages;
-  const CPLStringList files(shapefile.GetFileList());
+  const CPLStringList files(shapefile.GetFileList(), TRUE);
   for (int i = 0; i < files.size(); ++i) {
     const std::filesystem::path name(files[i]);
     const std::string ending = lower_case(name.extension().string());

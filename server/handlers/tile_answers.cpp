@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include "core/geodesy/geo_box.hpp"
 #include "server/api/json_parts.hpp"
 #include "server/handlers/answers.hpp"
+#include "tiles/mercator/tile_ground.hpp"
 
 namespace roadfix::server {
 namespace {
@@ -12,12 +12,6 @@ namespace {
 /// Not longer, though their addresses change with the map: a page that stays open asks for the same ones again, and
 /// gets what is there by then.
 constexpr const char* kCacheControl = "public, max-age=60";
-
-/// All around the Earth where the box lies across the antimeridian, which bounds of TileJSON must not.
-GeoBox not_wrapped(GeoBox box) {
-  if (box.south_west.lon_deg >= -180.0 && box.north_east.lon_deg <= 180.0) return box;
-  return {{box.south_west.lat_deg, -180.0}, {box.north_east.lat_deg, 180.0}};
-}
 
 }  // namespace
 
@@ -54,7 +48,7 @@ nlohmann::json tilejson(const http::Request& request, const ServedMap& map, cons
       {"attribution", credits_of(map.reader->info())},
       {"tiles", {fmt::format("{}/tiles/{{z}}/{{x}}/{{y}}.png?version={}{}", folder, map.edition(), query)}}};
   const MapView& view = map.view;
-  if (!view.extent.empty()) answer["bounds"] = api::bbox_json(not_wrapped(geo_box_around(view.zone, view.extent)));
+  if (!view.extent.empty()) answer["bounds"] = api::bbox_json(mercator::bounds_of(view));
   return answer;
 }
 

@@ -13,11 +13,13 @@
 #include "core/geodesy/shown_ground.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file_beside.hpp"
+#include "tiles/export/export_failures.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/export/mbtiles.hpp"
 #include "tiles/export/side_files.hpp"
 #include "tiles/sources/gdal_session.hpp"
 #include "tiles/store/sqlite.hpp"
+#include "tiles/store/tile_matrix.hpp"
 
 namespace roadfix {
 namespace {
@@ -68,18 +70,17 @@ GridGeometry geometry_of(const MapReader& map, const ExportOptions& options) {
 }
 
 /// Of a COG, each half as large, until one is at most a tile of 512 x 512.
-int overviews_of(GridGeometry geometry) {
+int overviews_of(const GridGeometry& geometry) {
   constexpr int kSmallest = 512;
-  constexpr double kCoarsestM = 4096.0;  // that a map has
   int count = 0;
   for (int size = std::max(geometry.cols, geometry.rows); size > kSmallest; size = (size + 1) / 2) ++count;
-  while (std::ldexp(geometry.cell_m, count) > kCoarsestM) --count;
+  while (std::ldexp(geometry.cell_m, count) > cell_of_zoom(0)) --count;
   return count;
 }
 
-/// Widened to whole cells of its coarsest overview.
-GridGeometry on_lattice_of_overviews(const GridGeometry& geometry) {
-  const double coarsest_m = std::ldexp(geometry.cell_m, overviews_of(geometry));
+/// Widened to whole cells of the coarsest of so many overviews.
+GridGeometry widened(const GridGeometry& geometry, int overviews) {
+  const double coarsest_m = std::ldexp(geometry.cell_m, overviews);
   return GridGeometry::covering(GridGeometry::covering(geometry.box(), coarsest_m).box(), geometry.cell_m);
 }
 
@@ -159,12 +160,9 @@ void copy(const Driver& kind, const Picture& picture, const Monitor& monitor) {
                                                     const_cast<char**>(kind.options.List()), on_progress,
                                                     const_cast<Monitor*>(&monitor))) != nullptr;  // and closed
   monitor.source.rethrow_failure();
-  if (monitor.stop.stop_requested()) throw Interrupted("work-stopped", "the export was stopped; nothing was written");
+  if (monitor.stop.stop_requested()) throw export_stopped();
   if (!copied || CPLGetLastErrorType() >= CE_Failure) {
-    throw IoFailure("export-failed",
-                    fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to and "
-                                "has room",
-                                picture.target().string(), messages.text()));
+    throw cannot_be_written(picture.target(), messages.text());
   }
 }
 
@@ -178,9 +176,8 @@ void copy_with_gdal(const MapReader& map, const GridGeometry& geometry, ExportFo
   }
   require_gdal();
   const Driver driver = driver_of(format, map.info());
-  const bool is_cog = format == ExportFormat::kCog;
-  MapDataset source(map, is_cog ? on_lattice_of_overviews(geometry) : geometry, driver.pixels,
-                    is_cog ? overviews_of(geometry) : 0);
+  const int overviews = format == ExportFormat::kCog ? overviews_of(geometry) : 0;
+  MapDataset source(map, widened(geometry, overviews), driver.pixels, overviews);
   copy(driver, picture, {source, progress, stop});
   if (format == ExportFormat::kPng && !picture.is_whole_png()) {
     throw IoFailure("export-failed", fmt::format("{}: its end cannot be written. Check that the disk has room",

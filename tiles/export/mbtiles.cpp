@@ -12,9 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/geodesy/geo_box.hpp"
-#include "core/units/error.hpp"
 #include "core/units/parallel_for.hpp"
+#include "tiles/export/export_failures.hpp"
 #include "tiles/export/map_dataset.hpp"
 #include "tiles/mercator/tile_ground.hpp"
 #include "tiles/mercator/tile_picture.hpp"
@@ -73,33 +72,34 @@ std::vector<TileSet> pyramid_above(TileSet finest) {
   return zooms;
 }
 
+/// With empty tables, in a transaction.
+sqlite::Connection begun(const std::filesystem::path& file, const std::filesystem::path& target) {
+  sqlite::Connection connection(file, sqlite::Access::kCreate,
+                                [target](const std::filesystem::path&, sqlite::Failure, const std::string& detail) {
+                                  return std::make_exception_ptr(cannot_be_written(target, detail));
+                                });
+  connection.execute(kTables);
+  return connection;
+}
+
 class TileFile {
  public:
   TileFile(const std::filesystem::path& file, const std::filesystem::path& target)
-      : connection_(file, sqlite::Access::kCreate,
-                    [target](const std::filesystem::path&, sqlite::Failure, const std::string& detail) {
-                      return std::make_exception_ptr(IoFailure(
-                          "export-failed",
-                          fmt::format("{}: it cannot be written ({}). Check that the folder exists, may be written to "
-                                      "and has room",
-                                      target.string(), detail)));
-                    }) {
-    connection_.execute(kTables);
-    insert_tile_.emplace(connection_, "INSERT INTO tiles VALUES (?1, ?2, ?3, ?4)");
-    insert_metadata_.emplace(connection_, "INSERT INTO metadata VALUES (?1, ?2)");
-  }
+      : connection_(begun(file, target)),
+        insert_tile_(connection_, "INSERT INTO tiles VALUES (?1, ?2, ?3, ?4)"),
+        insert_metadata_(connection_, "INSERT INTO metadata VALUES (?1, ?2)") {}
 
   void insert(const TileAddress& tile, const std::vector<std::byte>& png) {
     const int row = (1 << tile.z) - 1 - tile.y;  // MBTiles count from the south
-    insert_tile_->with(tile.z, tile.x, row, std::span(png)).run();
+    insert_tile_.with(tile.z, tile.x, row, std::span(png)).run();
   }
-  void insert(const std::string& name, const std::string& value) { insert_metadata_->with(name, value).run(); }
+  void insert(const std::string& name, const std::string& value) { insert_metadata_.with(name, value).run(); }
   void commit() { connection_.execute("COMMIT"); }
 
  private:
   sqlite::Connection connection_;
-  std::optional<sqlite::Statement> insert_tile_;
-  std::optional<sqlite::Statement> insert_metadata_;
+  sqlite::Statement insert_tile_;
+  sqlite::Statement insert_metadata_;
 };
 
 void write_tiles(const MapView& view, const std::vector<TileSet>& zooms, TileFile& file, const OnProgress& progress,
@@ -111,7 +111,7 @@ void write_tiles(const MapView& view, const std::vector<TileSet>& zooms, TileFil
   for (std::size_t begin = 0; begin < tiles.size(); begin += kAtOnce) {
     const auto part = std::span(tiles).subspan(begin, std::min(kAtOnce, tiles.size() - begin));
     if (progress) progress(static_cast<std::int64_t>(1000 * begin / tiles.size()), 1000);
-    if (stop.stop_requested()) throw Interrupted("work-stopped", "the export was stopped; nothing was written");
+    if (stop.stop_requested()) throw export_stopped();
     std::vector<std::optional<std::vector<std::byte>>> pictures(part.size());
     parallel_for(static_cast<int>(part.size()), threads, [&](int i) {
       const auto at = static_cast<std::size_t>(i);
@@ -123,11 +123,9 @@ void write_tiles(const MapView& view, const std::vector<TileSet>& zooms, TileFil
   }
 }
 
-/// All around the Earth where the box lies across the antimeridian, as MBTiles may not.
-std::string bounds_of(const GeoBox& box) {
-  const bool across = box.south_west.lon_deg < -180.0 || box.north_east.lon_deg > 180.0;
-  return fmt::format("{:.7f},{:.7f},{:.7f},{:.7f}", across ? -180.0 : box.south_west.lon_deg, box.south_west.lat_deg,
-                     across ? 180.0 : box.north_east.lon_deg, box.north_east.lat_deg);
+std::string text_of(const GeoBox& box) {
+  return fmt::format("{:.7f},{:.7f},{:.7f},{:.7f}", box.south_west.lon_deg, box.south_west.lat_deg,
+                     box.north_east.lon_deg, box.north_east.lat_deg);
 }
 
 void write_metadata(const MapInfo& info, const MapView& view, int coarsest, int finest, TileFile& file) {
@@ -137,7 +135,7 @@ void write_metadata(const MapInfo& info, const MapView& view, int coarsest, int 
   file.insert("type", "overlay");
   file.insert("version", "1");
   file.insert("description", description_of(info));
-  file.insert("bounds", bounds_of(geo_box_around(view.zone, view.extent)));
+  file.insert("bounds", text_of(mercator::bounds_of(view)));
   file.insert("center", fmt::format("{:.7f},{:.7f},{}", middle.lon_deg, middle.lat_deg, finest));
   file.insert("minzoom", std::to_string(coarsest));
   file.insert("maxzoom", std::to_string(finest));

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geodesy/geo_box.hpp"
-
 namespace roadfix::mercator {
 namespace {
 
@@ -23,6 +21,12 @@ PixelBox pixels_of(const GeoBox& bounds, TileAddress tile, double turn_deg) {
 }
 
 }  // namespace
+
+GeoBox bounds_of(const MapView& map) {
+  const GeoBox box = geo_box_around(map.zone, map.extent);
+  if (box.south_west.lon_deg >= -180.0 && box.north_east.lon_deg <= 180.0) return box;
+  return {{box.south_west.lat_deg, -180.0}, {box.north_east.lat_deg, 180.0}};
+}
 
 std::vector<TileAddress> tiles_on(const UtmZone& zone, const GridBox& box, int zoom) {
   const GeoBox bounds = geo_box_around(zone, box);

@@ -3,10 +3,15 @@
 
 #include <vector>
 
+#include "core/geodesy/geo_box.hpp"
 #include "core/locate/map_view.hpp"
 #include "tiles/mercator/web_mercator.hpp"
 
 namespace roadfix::mercator {
+
+/// Of the map's extent, which is not empty, as TileJSON and MBTiles may tell it: all around the Earth where it lies
+/// across the antimeridian.
+GeoBox bounds_of(const MapView& map);
 
 /// Pixels of a tile [left, right) x [top, bottom).
 struct PixelBox {

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 
+#include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "tiles/sources/gdal_session.hpp"
@@ -31,9 +32,7 @@ std::optional<std::array<std::uint8_t, kHeader>> header_of(const std::string& pa
 std::optional<std::int64_t> shapes_in(const std::string& index) {
   const auto header = header_of(index);
   if (!header) return std::nullopt;
-  std::int64_t words = 0;
-  for (std::size_t i = 24; i < 28; ++i) words = words * 256 + (*header)[i];
-  return (2 * words - 100) / 8;
+  return (2 * big_endian(Bytes(*header).subspan(24, 4)) - 100) / 8;
 }
 
 /// By a .dbf, the lowest byte first.

@@ -21,6 +21,7 @@
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
+#include "core/units/parallel_for.hpp"
 #include "server/application.hpp"
 
 namespace roadfix::cli {

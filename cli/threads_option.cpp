@@ -1,11 +1,8 @@
 #include "cli/threads_option.hpp"
 
-#include <algorithm>
-#include <thread>
+#include "core/units/parallel_for.hpp"
 
 namespace roadfix::cli {
-
-int processors() { return static_cast<int>(std::max(1U, std::thread::hardware_concurrency())); }
 
 void add_threads_option(CLI::App& command, const std::string& name, int& threads, const std::string& what) {
   threads = processors();

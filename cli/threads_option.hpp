@@ -6,11 +6,8 @@
 
 namespace roadfix::cli {
 
-/// Of this machine, at least 1.
-int processors();
-
-/// 1 to 1024, as many as processors() unless given. `name` is "--threads" or "--jobs"; `threads` must live as long as
-/// the command.
+/// 1 to 1024, as many as the machine has processors unless given. `name` is "--threads" or "--jobs"; `threads` must
+/// live as long as the command.
 void add_threads_option(CLI::App& command, const std::string& name, int& threads, const std::string& what);
 
 }  // namespace roadfix::cli

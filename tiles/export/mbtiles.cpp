@@ -8,7 +8,6 @@
 #include <set>
 #include <span>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -107,13 +106,12 @@ void write_tiles(const MapView& view, const std::vector<TileSet>& zooms, TileFil
   constexpr std::size_t kAtOnce = 64;
   std::vector<TileAddress> tiles;
   for (const TileSet& zoom : zooms) tiles.insert(tiles.end(), zoom.begin(), zoom.end());
-  const auto threads = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   for (std::size_t begin = 0; begin < tiles.size(); begin += kAtOnce) {
     const auto part = std::span(tiles).subspan(begin, std::min(kAtOnce, tiles.size() - begin));
     if (progress) progress(static_cast<std::int64_t>(1000 * begin / tiles.size()), 1000);
     if (stop.stop_requested()) throw export_stopped();
     std::vector<std::optional<std::vector<std::byte>>> pictures(part.size());
-    parallel_for(static_cast<int>(part.size()), threads, [&](int i) {
+    parallel_for(static_cast<int>(part.size()), processors(), [&](int i) {
       const auto at = static_cast<std::size_t>(i);
       pictures[at] = mercator::tile_png(view, part[at], mercator::TileStyle::kGrey);
     });

@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <thread>
-
 #include "core/units/error.hpp"
 #include "core/units/parallel_for.hpp"
 #include "tiles/store/map_description.hpp"
@@ -49,8 +46,7 @@ std::vector<std::byte> FusionQueue::fused(Tile tile) {
 /// Tiles of one level, on all processors: most of the work is their compression.
 void FusionQueue::fuse(std::span<const Tile> tiles) {
   std::vector<std::vector<std::byte>> pngs(tiles.size());
-  const auto processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  parallel_for(static_cast<int>(tiles.size()), processors, [&](int i) {
+  parallel_for(static_cast<int>(tiles.size()), processors(), [&](int i) {
     const auto at = static_cast<std::size_t>(i);
     pngs[at] = fused(tiles[at]);
   });

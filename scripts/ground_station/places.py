@@ -9,15 +9,16 @@ PRIOR = ("lat", "lon", "radius_m", "bbox", "heading_deg", "heading_range_deg", "
 
 
 def told_place(request):
-    """What POST /v1/tracks is told of the place, as a known one. None where it is told nothing."""
-    if "radius_m" in request:
-        lat, lon, within_m = request["lat"], request["lon"], request["radius_m"]
-    elif "bbox" in request:
-        west, south, east, north = request["bbox"]
-        width = (east - west) % 360.0
-        lat, lon = (south + north) / 2.0, (west + width / 2.0 + 180.0) % 360.0 - 180.0
-        within_m = math.hypot(width, north - south) / 2.0 * DEGREE_M
-    else:
+    """What POST /v1/tracks is told of the place, as a known one. None where it is told nothing, or what it refuses."""
+    try:
+        if "radius_m" in request:
+            lat, lon, within_m = (float(request[name]) for name in ("lat", "lon", "radius_m"))
+        else:
+            west, south, east, north = request["bbox"]
+            width = (east - west) % 360.0
+            lat, lon = (south + north) / 2.0, (west + width / 2.0 + 180.0) % 360.0 - 180.0
+            within_m = math.hypot(width, north - south) / 2.0 * DEGREE_M
+    except (KeyError, TypeError, ValueError):
         return None
     return {"lat": lat, "lon": lon, "within_m": within_m, "flown_m": 0.0}
 

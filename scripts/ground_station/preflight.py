@@ -56,11 +56,8 @@ def _leaves_height_to_lines(frame_fields):
 
 def _require_near(request, bbox):
     """The place where the track begins."""
-    try:
-        place = told_place(request)
-        beside_m = _distance_m(place, bbox) - place["within_m"] if place else 0.0
-    except (KeyError, TypeError, ValueError):  # the service says what is wrong with it
-        return
+    place = told_place(request)
+    beside_m = _distance_m(place, bbox) - place["within_m"] if place else 0.0
     if beside_m > 0.0:
         raise ValueError(f"--track: the track would begin at least {beside_m / 1e3:.1f} km beside the map, which shows "
                          f"lat {bbox[1]:.4f} to {bbox[3]:.4f} and lon {bbox[0]:.4f} to {bbox[2]:.4f}")

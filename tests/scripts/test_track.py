@@ -13,7 +13,7 @@ from followed import Followed
 from words import said
 
 from service import Refused, Service, Silent
-from track import Track
+from track import Track, WrongTrack
 
 
 class Steps(Followed):
@@ -261,6 +261,14 @@ class Steps(Followed):
                 begun = fake.begun()[-1]
                 self.assertAlmostEqual(begun.pop("radius_m"), radius_m + 500.0, delta=50.0 * 2.0)
                 self.assertEqual(begun, {"map": "m", "lat": lat, "lon": lon}, "nor is the heading that of the start")
+
+    def test_ask_the_service_what_is_wrong_with_a_start_however_far_they_have_flown_from_it(self):
+        for told in ({"radius_m": 5}, {"bbox": "1,2,3,4"}, {"lat": "37,7", "lon": 38, "radius_m": 5}):
+            with FakeService() as fake, self.assertRaisesRegex(WrongTrack, "what is wrong"):
+                fake.never_begun = (400, {"code": "bad-parameter", "detail": "what is wrong"})
+                track, _ = self.fly(fake, 0, request={"map": "m", **told})
+                track.pass_by((0.0, 0.0, 0.0), None)
+                track.step((60.0, 0.0, 0.0), {"time_us": 2})
 
     def test_begin_their_first_track_as_far_from_the_start_as_they_have_flown_while_the_service_was_away(self):
         told = {"map": "m", "lat": 1, "lon": 2, "radius_m": 40, "heading_deg": 90, "heading_range_deg": 5,

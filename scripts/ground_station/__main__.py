@@ -30,6 +30,8 @@ from steps import NewestLine, all_lines, captured, place_and_covariance, read_st
 from track import Track, WrongTrack
 from trial import try_out
 
+LARGEST_PORT = 65535  # a larger one would be cut to another
+
 
 def parse_setting(text):
     """NAME=VALUE, the value as JSON where it is some."""
@@ -44,7 +46,7 @@ def parse_setting(text):
 
 def parse_address(text):
     host, colon, port = text.rpartition(":")
-    if not host or not colon or not port.isdigit():
+    if not host or not colon or not port.isdigit() or int(port) > LARGEST_PORT:
         raise argparse.ArgumentTypeError(f"'{text}': write HOST:PORT")
     return host.strip("[]"), int(port)
 

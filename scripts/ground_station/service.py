@@ -181,7 +181,7 @@ class Service:
     def _date_s(answer):
         try:
             return email.utils.parsedate_to_datetime(answer.headers["Date"]).timestamp()
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             return None
 
     @staticmethod

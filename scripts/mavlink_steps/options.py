@@ -12,11 +12,12 @@ FLATTEST_DEG = math.degrees(FLATTEST)
 #: What a table tells of a camera: of how many numbers, None of any
 CAMERA = {"fov_deg": 1, "focal_px": 1, "principal_px": 2, "distortion": None, "lens": None, "attitude_sigma_deg": 1}
 LENSES = ("perspective", "fisheye")
+LARGEST_PORT = 65535
 
 
 def parse_address(text):
     host, _, port = text.rpartition(":")
-    if not port.isdigit():
+    if not port.isdigit() or int(port) > LARGEST_PORT:
         raise argparse.ArgumentTypeError(f"'{text}': write PORT or HOST:PORT")
     return host.strip("[]") or "0.0.0.0", int(port)
 

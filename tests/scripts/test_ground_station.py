@@ -40,6 +40,16 @@ def dripping(answer):
         yield "http://127.0.0.1:%d" % listening.getsockname()[1]
 
 
+class Answers(unittest.TestCase):
+    def test_count_whatever_their_date(self):
+        for date in ("Mon, 1 Jan 99999999999 00:00:00 GMT", "once", "Mon, 1 Jan 2024 00:00:00 +99999999999999"):
+            with dripping(b"HTTP/1.1 204 No Content\r\nDate: %s\r\n\r\n" % date.encode()) as url:
+                service = Service(url, 1.0)
+                self.addCleanup(service.close)
+                self.assertIsNone(service.ask("GET", "/"))
+                self.assertIsNone(service.date_s, date)
+
+
 class Patience(unittest.TestCase):
     def test_is_as_long_as_it_is_told_with_a_service_that_says_nothing_and_long_enough_to_ask_again(self):
         with socket.create_server(("127.0.0.1", 0)) as silent:
@@ -70,7 +80,6 @@ class Patience(unittest.TestCase):
             self.addCleanup(service.close)
             Track(service, {"map": "m"}).step((0.0, 0.0, 0.0), {"time_us": 1})
             self.assertEqual({step["sequence"] for step in fake.steps()}, {1})
-
 
     def test_is_told_once_and_so_is_its_end(self):
         with FakeService([503, 503, 503, 200, 503]) as fake, said() as words:

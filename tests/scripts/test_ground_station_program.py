@@ -12,9 +12,7 @@ import time
 import unittest
 from pathlib import Path
 
-from fake_service import BEFORE, PROGRAM, ROOT, FakeService
-
-from packet_age import told_age_s
+from fake_service import BEFORE, PROGRAM, FakeService
 
 
 class Positions(unittest.TestCase):
@@ -105,22 +103,9 @@ class Positions(unittest.TestCase):
             self.assertFalse(self.sent(packet_format, captured_s_ago=3.0))
             self.assertFalse(self.sent(packet_format, script=[503]), "a second until it was sent again")
 
-    def test_is_what_the_service_took_long_for_only_if_the_message_says_so_and_its_receiver_takes_it(self):
-        for packet_format, took_s, says_so in (("command_int", 3.0, True), ("command_int", 8.0, False),
-                                               ("global_position_sensor", 3.0, False), ("nmea", 8.0, False)):
-            sent = self.sent(packet_format, captured_s_ago=took_s, told_s=took_s, options=self.PATIENT)
-            self.assertEqual(sent, says_so, packet_format)
-
     def test_is_not_what_took_long_on_the_way_to_the_service_and_back(self):
         for packet_format in ("global_position_sensor", "command_int"):
             self.assertFalse(self.sent(packet_format, delay_s=0.8, told_s=0.1))
-
-    def test_is_as_old_as_the_bytes_of_another_implementation_say(self):
-        vectors = json.loads((ROOT / "tests/server/autopilot/node_mavlink_vectors.json").read_text())
-        for name, age_s in (("global_position_sensor", 0.25), ("command_int", 0.25),
-                            ("global_position_sensor_unknown", 0.0), ("command_int_unknown", 0.0)):
-            packet_format = name.removesuffix("_unknown")
-            self.assertAlmostEqual(told_age_s(packet_format, bytes.fromhex(vectors[name])), age_s, msg=name)
 
     def test_is_that_of_a_recording_whatever_its_clock(self):
         self.assertTrue(self.sent("gps_input", captured_s_ago=1e6))
@@ -187,6 +172,13 @@ class Program(unittest.TestCase):
                                  capture_output=True, text=True, timeout=60)
         self.assertEqual(program.returncode, 2)
         self.assertIn("--track map: the map is that of --map", program.stderr)
+
+    def test_refuses_an_address_without_a_port_that_there_is(self):
+        for address in ("127.0.0.1", "127.0.0.1:65536"):
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", "--format", "nmea", "--send",
+                                      address], capture_output=True, text=True, timeout=60)
+            self.assertEqual(program.returncode, 2)
+            self.assertIn(f"'{address}': write HOST:PORT", program.stderr)
 
     def test_vouches_for_a_start_only_where_it_would_know_of_it_after_a_restart(self):
         with FakeService() as fake, tempfile.TemporaryDirectory() as folder:

@@ -277,9 +277,9 @@ class Program(unittest.TestCase):
         self.assertEqual(ended.returncode, 2)
         return ended.stderr
 
-    def test_refuses_what_is_no_number_delay_or_system(self):
+    def test_refuses_what_is_no_number_delay_system_or_port(self):
         for option, value in (("--agl", "nan"), ("--takeoff-agl", "inf"), ("--camera-yaw", "x"), ("--delay", "-0.1"),
-                              ("--delay", "nan"), ("--system", "0"), ("--system", "256"),
+                              ("--delay", "nan"), ("--system", "0"), ("--system", "256"), ("--listen", "65536"),
                               ("--every", "0"), ("--every", "nan")):
             self.assertIn(f"argument {option}: ", self.refusal_of(option, value))
 

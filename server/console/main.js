@@ -217,7 +217,8 @@ view.on('keypress', ({ originalEvent }) => {
 for (const id of ['layer', 'footprint']) by(id).addEventListener('change', drawLayer);
 by('footprint').addEventListener('input', () => places.forget());
 for (const id of ['footprint', 'fov']) by(id).addEventListener('change', askRoute);
-by('route').addEventListener('input', askRoute);
+// A browser says "cancel" where the same file is chosen again, also one that was changed since.
+for (const name of ['input', 'cancel']) by('route').addEventListener(name, askRoute);
 acceptDrops(by('drop'), (name) => (isRoute(name) ? by('route') : by('ask').elements.picture));
 by('follow').addEventListener('submit', (event) => {
   event.preventDefault();

@@ -132,6 +132,10 @@ await run({
     assert.match(asked[1], /fov_deg=73/);
     assert.doesNotMatch(asked[1], /footprint_m/);
     assert.match(by('along').textContent, /two places at least/);
+    by('route').listeners.cancel();
+    await settled();
+    await settled();
+    assert.equal(asked.length, 3, 'it was changed, and chosen again');
     by('maps').value = 'town';
     by('maps').listeners.change();
     assert.equal(by('along').textContent, '');

@@ -9,11 +9,12 @@ const LOOK_MS = 1000;
 const PATIENCE_MS = 5000;
 /// An estimate tells where the vehicle was. Older ones are not drawn as where it is.
 const FRESH_S = 10;
-/// Places of the line that are loaded at a time.
-const LINE_STEPS = 1000;
+/// Places of the line that are loaded at a time, and for how long: over a slow link these hundreds of kB take longer.
+const LINE_STEPS = 500;
+const LINE_PATIENCE_MS = 60_000;
 const STATUS = { converged: 'fix', searching: 'ambiguous' };
 
-const get = (url) => request(url, { signal: AbortSignal.timeout(PATIENCE_MS) });
+const get = (url, patienceMs = PATIENCE_MS) => request(url, { signal: AbortSignal.timeout(patienceMs) });
 const urlOf = (id) => `/v1/tracks/${encodeURIComponent(id)}`;
 
 function textOf({ id, map, created_us, stale }) {
@@ -179,7 +180,8 @@ export class Tracks {
     const { id, line, track } = chosen;
     if (chosen.extending || (track.last?.sequence ?? -1) <= line.after) return;
     chosen.extending = true;
-    const answer = await get(`${urlOf(id)}/history?after=${line.after}&limit=${LINE_STEPS}`).catch(() => null);
+    const url = `${urlOf(id)}/history?after=${line.after}&limit=${LINE_STEPS}`;
+    const answer = await get(url, LINE_PATIENCE_MS).catch(() => null);
     chosen.extending = false;
     line.add(answer?.features ?? []);
     if (chosen === this.chosen) line.draw();

@@ -7,8 +7,10 @@ let now = 1_000_000;
 Date.now = () => now;
 /// Of the last question.
 let endPatience;
-AbortSignal.timeout = () => {
+let patienceMs;
+AbortSignal.timeout = (ms) => {
   const patience = new AbortController();
+  patienceMs = ms;
   endPatience = () => patience.abort(new DOMException('', 'TimeoutError'));
   return patience.signal;
 };
@@ -167,6 +169,20 @@ await run({
     assert.match(asked, /after=3&/);
     assert.deepEqual(tracks.path.at, [[[36.9, 38]], [[37, 38], [37.1, 38]]]);
     assert.ok(line);
+  },
+  async 'a line that comes over a slow link is waited for, and holds up no estimate'() {
+    let come;
+    answer(track('one', converged));
+    service.answers['/v1/tracks/one/history'] = () => new Promise((give) => { come = give; });
+    const followed = tracks.follow('one');
+    await new Promise(setImmediate);
+    assert.ok(patienceMs >= 30_000);
+    service.answers['/v1/tracks/one'] = track('one', { ...converged, sequence: 2, resets: 7 });
+    await tracks.look();
+    assert.match(details.textContent, /resets\n7/);
+    come({ features: [place(0, 36.9)] });
+    await followed;
+    assert.deepEqual(tracks.path.at, [[[36.9, 38]]]);
   },
   async 'a track that is out of view is brought there once'() {
     answer(track('one', { ...converged, clusters: [cluster(50, 1)] }));

@@ -137,7 +137,7 @@ function enableChosen(form) {
 function openAddress() {
   const { map, track } = shownBy(location.hash);
   if (map) wishMap(map);
-  if (track) tracks.follow(track);
+  tracks.follow(track ?? '');
 }
 
 /// Names in the address what the page shows, so that loading it again shows the same.

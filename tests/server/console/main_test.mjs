@@ -154,4 +154,11 @@ await run({
     await acts.focus();
     assert.equal(by('trouble').textContent, '');
   },
+  'an address that names a map alone follows no track, as where the page is loaded with it'() {
+    for (const [hash, track] of [['#track=one', 'one'], ['#map=town', '']]) {
+      location.hash = hash;
+      acts.hashchange();
+      assert.equal(by('tracks').value, track);
+    }
+  },
 });

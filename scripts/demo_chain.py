@@ -251,8 +251,9 @@ Open in a browser or a GIS, until Ctrl-C:
 
 def main():
     arguments = parse_arguments()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(128 + signal.SIGTERM))
-    signal.signal(signal.SIGHUP, lambda *_: sys.exit(128 + signal.SIGHUP))
+    for ending in (signal.SIGTERM, signal.SIGHUP):
+        if signal.getsignal(ending) != signal.SIG_IGN:  # as nohup has it
+            signal.signal(ending, lambda number, _: sys.exit(128 + number))
     try:
         work = arguments.keep or pathlib.Path(tempfile.mkdtemp(prefix="roadfix-demo-"))
         work.mkdir(parents=True, exist_ok=True)

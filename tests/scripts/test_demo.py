@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 from functools import partial
 from pathlib import Path
@@ -42,20 +43,31 @@ class Demo(unittest.TestCase):
             self.assertEqual(demo.returncode, 1)
             self.assertRegex(demo.stderr, r"\Ademo: no folder for its files: .*\n\Z")
 
-    def test_has_not_succeeded_where_it_is_stopped_before_its_answers(self):
+    def ending_of(self, heard, *endings):
+        """Of a demo that never answers and has heard these signals as of a terminal."""
         with tempfile.TemporaryDirectory() as folder:
             endless = Path(folder, "roadfix")
             endless.write_text("#!/bin/sh\nexec sleep 60\n")
             endless.chmod(0o755)
-            # What a shell without job control starts with & ignores it, and so would all that it starts.
-            heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
             demo = subprocess.Popen([sys.executable, "-B", str(ROOT / "scripts/demo_chain.py"), "--roadfix", str(endless),
                                      "--once", "--keep", folder], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
                                     start_new_session=True, preexec_fn=heard)
             self.assertIn("roadfix world", demo.stdout.readline())
-            os.killpg(demo.pid, signal.SIGINT)  # as a terminal does
+            for ending in endings:
+                os.killpg(demo.pid, ending)
+                time.sleep(0.5)
             _, told = demo.communicate(timeout=60)
-            self.assertEqual((demo.returncode, told), (1, "\ndemo: stopped before its answers\n"))
+            return demo.returncode, told
+
+    def test_has_not_succeeded_where_it_is_stopped_before_its_answers(self):
+        # What a shell without job control starts with & ignores it, and so would all that it starts.
+        heard = partial(signal.signal, signal.SIGINT, signal.default_int_handler)
+        self.assertEqual(self.ending_of(heard, signal.SIGINT), (1, "\ndemo: stopped before its answers\n"))
+
+    def test_ends_with_its_terminal_unless_it_is_told_not_to(self):
+        for heard, *endings in ((signal.SIG_DFL, signal.SIGHUP), (signal.SIG_IGN, signal.SIGHUP, signal.SIGTERM)):
+            status, _ = self.ending_of(partial(signal.signal, signal.SIGHUP, heard), *endings)
+            self.assertEqual(status, 128 + endings[-1])
 
 
 if __name__ == "__main__":

@@ -46,7 +46,7 @@ class NewPictures:
         self._lateness = Lateness(every_s)
         self.have_come = False
         self._fails = False
-        for name in self._pictures(os.listdir(folder)):
+        for name in self._new(os.listdir(folder)):
             try:
                 self._finished[name] = self._version(name, os.stat(self._folder / name))._replace(written=-math.inf)
             except OSError:  # removed meanwhile
@@ -56,13 +56,13 @@ class NewPictures:
         """Path and time.monotonic() of each that is complete since the last call, the oldest first."""
         self.have_come = False
         try:
-            names = self._pictures(os.listdir(self._folder))
+            new = self._new(os.listdir(self._folder))
         except OSError as error:
             self._say_that_it_fails(error)
             return []
         self._say_that_it_fails(None)
         complete = []
-        for name in self._changed(names):
+        for name in new | self._rewritten():
             try:
                 version, is_whole = self._look_into(name)
             except OSError:  # renamed or removed meanwhile
@@ -74,25 +74,26 @@ class NewPictures:
         self.have_come = bool(complete)
         return [(path, written) for written, path, version in sorted(complete) if self._take(path, version)]
 
-    def _pictures(self, names):
-        new = set(names) - self._others
-        others = {name for name in new - self._finished.keys() if os.path.splitext(name)[1].lower() not in ENDINGS}
+    def _new(self, names):
+        """Those of pictures that were not taken."""
+        new = {name for name in names if name not in self._finished and name not in self._others}
+        others = {name for name in new if os.path.splitext(name)[1].lower() not in ENDINGS}
         self._others |= others
         return new - others
 
-    def _changed(self, names):
-        """Those that are new, or were written since they were taken, as far as they are looked at now."""
-        changed = names - self._finished.keys()
+    def _rewritten(self):
+        """Those that were written since they were taken, as far as they are looked at now."""
+        rewritten = set()
         if not self._to_look_at:
             self._to_look_at = sorted(self._finished, reverse=True)
         for name in self._to_look_at[-LOOKS:]:
             try:
                 if not self._finished[name].is_of(os.stat(self._folder / name)):
-                    changed.add(name)
+                    rewritten.add(name)
             except OSError:  # removed
                 continue
         del self._to_look_at[-LOOKS:]
-        return changed
+        return rewritten
 
     def _look_into(self, name):
         """As it is, and whether it has the end of a picture."""

@@ -173,7 +173,7 @@ class Service:
     def _problem(content):
         try:
             problem = json.loads(content)
-        except ValueError:
+        except (ValueError, RecursionError):
             problem = None
         return problem if isinstance(problem, dict) else {"detail": content[:200].decode(errors="replace")}
 

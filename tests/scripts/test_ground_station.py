@@ -15,7 +15,7 @@ from unittest import mock
 from fake_service import ROOT, FakeService
 from words import said
 
-from service import Service, Silent
+from service import Refused, Service, Silent
 from steps import PICTURE_FIELDS, POSITION_FIELDS, NewestLine, all_lines, read_step
 from track import Track
 
@@ -48,6 +48,14 @@ class Answers(unittest.TestCase):
                 self.addCleanup(service.close)
                 self.assertIsNone(service.ask("GET", "/"))
                 self.assertIsNone(service.date_s, date)
+
+    def test_that_refuse_are_told_whatever_is_in_them(self):
+        for content in (b"[" * 100_000, b"\xff", b'"later"'):
+            with dripping(b"HTTP/1.1 404 Not Found\r\nContent-Length: %d\r\n\r\n%s" % (len(content), content)) as url:
+                service = Service(url, 1.0)
+                self.addCleanup(service.close)
+                with self.assertRaisesRegex(Refused, "404 "):
+                    service.ask("GET", "/")
 
 
 class Patience(unittest.TestCase):

@@ -59,7 +59,7 @@ class NewestLine:
         self._changed = threading.Condition()
         self._lines = []      # since the last
         self._newest = None   # of them
-        self._ended = False
+        self._end = None      # of the input: StopIteration, or why it cannot be read on
         threading.Thread(target=self._read, args=(texts,), daemon=True).start()
 
     def __iter__(self):
@@ -67,11 +67,11 @@ class NewestLine:
 
     def __next__(self):
         with self._changed:
-            while not self._changed.wait_for(lambda: self._newest is not None or self._ended, timeout=1.0):
+            while not self._changed.wait_for(lambda: self._newest is not None or self._end, timeout=1.0):
                 pass  # without a limit Ctrl-C would not be heard everywhere
             if self._newest is None:
                 if not self._lines:
-                    raise StopIteration
+                    raise self._end
                 self._newest = len(self._lines) - 1  # those behind the last picture: the flight ends with them
             *passed, line = self._lines[:self._newest + 1]
             del self._lines[:self._newest + 1]
@@ -79,6 +79,7 @@ class NewestLine:
         return line._replace(passed=tuple(passed))
 
     def _read(self, texts):
+        end = StopIteration()
         try:
             for line in all_lines(texts):
                 with self._changed:
@@ -86,10 +87,11 @@ class NewestLine:
                     if self._newest is None or line.has_picture or not self._lines[self._newest].has_picture:
                         self._newest = len(self._lines) - 1
                     self._changed.notify()
-        finally:
-            with self._changed:
-                self._ended = True
-                self._changed.notify()
+        except Exception as failure:
+            end = failure
+        with self._changed:
+            self._end = end
+            self._changed.notify()
 
 
 class Step(NamedTuple):

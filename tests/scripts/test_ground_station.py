@@ -10,7 +10,6 @@ import threading
 import time
 import unittest
 from pathlib import Path
-from unittest import mock
 
 from fake_service import ROOT, FakeService
 from words import said
@@ -192,18 +191,19 @@ class Lines(unittest.TestCase):
     def test_without_a_picture_behind_the_last_picture_are_given_when_the_input_ends(self):
         lines = NewestLine(io.StringIO('{"image": "1"}\n{}\n{}\n'))
         with lines._changed:
-            lines._changed.wait_for(lambda: lines._ended, timeout=10.0)
+            lines._changed.wait_for(lambda: lines._end, timeout=10.0)
         self.assertEqual([(line.number, [passed.number for passed in line.passed]) for line in lines],
                          [(1, []), (3, [2])])
 
-    def test_end_when_the_input_cannot_be_read_any_more(self):
+    def test_end_with_what_is_wrong_when_the_input_cannot_be_read_any_more(self):
         def broken():
             yield "{}"
             raise OSError("the disk was taken away")
 
-        with mock.patch("threading.excepthook") as told:
-            self.assertEqual([line.number for line in NewestLine(broken())], [1])
-        told.assert_called_once()
+        lines = NewestLine(broken())
+        self.assertEqual(next(lines).number, 1)
+        with self.assertRaisesRegex(OSError, "taken away"):
+            next(lines)
 
 
 if __name__ == "__main__":

@@ -61,7 +61,8 @@ class Track:
         self._request = dict(request)
         self._file = StateFile(state_file, request["map"])
         self._state = self._file.read()
-        self._file.write(self._state)  # one that cannot be written is told of before the flight
+        write = self._file.keep if was_asked_lately(self._state) else self._file.write
+        write(self._state)  # one that cannot be written begins no flight, but ends none
         self._of_another_process = bool(self._state)
         self._estimator = Estimator()
         self._travel = Travel()

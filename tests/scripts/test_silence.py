@@ -85,6 +85,17 @@ class Restarts(Flights):
                 self.fly(self.client(), 2)
                 self.check_goes_on()
 
+    def test_on_a_full_disk_go_on_with_a_flight_and_begin_none(self):
+        self.fly(self.client(), 1)
+        self.state.with_name("state.json.part").symlink_to("/dev/full")
+        self.pass_s(599.0)
+        self.fly(self.client(), 2)
+        self.assertEqual((len(self.fake.begun()), self.fake.steps()[-1]["sequence"]), (1, 2))
+        self.assertIn("state.json is not kept up to date", self.words.getvalue())
+        self.pass_s(2.0)
+        with self.assertRaisesRegex(OSError, "No space left"):
+            self.client()
+
     def test_within_ten_minutes_are_of_the_same_flight(self):
         self.assertEqual(FORGOTTEN_S, 600.0)
         for after_s, check in ((599.0, self.check_goes_on), (601.0, self.check_begins_where_told)):

@@ -137,7 +137,9 @@ class Reader {
     require(node.input_size() == 1);
     const int of = layer(node.input(0));
     require(of != Layer::kPicture && consumers_[node.input(0)] == 1);
-    layers_[static_cast<std::size_t>(of)].relu = true;
+    Layer& rectified = layers_[static_cast<std::size_t>(of)];
+    require(rectified.kind != Layer::Kind::kConcat);
+    rectified.relu = true;
     set_layer(node.output(0), of);
   }
 

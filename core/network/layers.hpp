@@ -34,7 +34,7 @@ struct Layer {
   Kind kind = Kind::kConvolution;
   std::vector<int> inputs{};  ///< indices of earlier layers, or kPicture
   int channels = 0;           ///< of the output
-  bool relu = false;          ///< negative outputs become 0, after everything else
+  bool relu = false;          ///< negative outputs become 0, after everything else; not of kConcat: oneDNN has no such
   Convolution convolution{};  ///< of kConvolution alone
 };
 

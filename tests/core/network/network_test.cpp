@@ -91,6 +91,17 @@ TEST(Network, ALayerMayBeAddedToWhatIsMadeOfIt) {
   EXPECT_LT(cv::norm(found, expected, cv::NORM_INF), 1e-4 * cv::norm(expected, cv::NORM_INF));
 }
 
+TEST(Network, WhatIsConcatenatedMayBeRectified) {
+  OnnxFile file(1);
+  const OnnxFile::Shape six{.inputs = 3, .outputs = 6};
+  const std::string both = file.relu(file.concat({file.convolution("picture", six), file.convolution("picture", six)}));
+  const auto onnx = file.bytes(file.convolution(both, {.inputs = 12, .outputs = 1}));
+  const cv::Mat picture = random_picture({32, 24});
+  const cv::Mat expected = OpenCvNetwork(onnx).run(picture);
+  EXPECT_LT(cv::norm(load_network(onnx)->run(picture), expected, cv::NORM_INF),
+            1e-4 * cv::norm(expected, cv::NORM_INF));
+}
+
 TEST(Network, APictureMayBePartOfALargerOne) {
   const auto network = load_network(road_network(1));
   const cv::Mat large = random_picture({96, 80});

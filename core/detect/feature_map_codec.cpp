@@ -7,7 +7,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "core/detect/frame_image.hpp"
 #include "core/detect/ground_scale.hpp"
 #include "core/grid/cell_size.hpp"
+#include "core/png/plain_png.hpp"
 #include "core/png/png_text.hpp"
 #include "core/units/error.hpp"
 
@@ -176,16 +176,15 @@ std::vector<std::uint8_t> encode_feature_map(const CellArray& cells) {
                     "window or another format",
                     kLongestSide, cells.cols(), cells.rows()));
   }
-  cv::Mat picture(cells.rows(), cells.cols(), CV_8UC4);
-  for (int row = 0; row < cells.rows(); ++row) {
-    for (int col = 0; col < cells.cols(); ++col) {
-      const Cell cell = cells.at(col, row);
-      picture.at<cv::Vec4b>(row, col) = is_observed(cell) ? cv::Vec4b(cell, cell, cell, 255) : cv::Vec4b(0, 0, 0, 0);
-    }
+  std::vector<std::uint8_t> grey_and_alpha;
+  grey_and_alpha.reserve(2 * cells.cells().size());
+  for (const Cell cell : cells.cells()) {
+    grey_and_alpha.push_back(is_observed(cell) ? cell : 0);
+    grey_and_alpha.push_back(is_observed(cell) ? 255 : 0);
   }
-  std::vector<std::uint8_t> png;
-  cv::imencode(".png", picture, png);
-  return png;
+  const std::vector<std::byte> png = encode_plain_png(grey_and_alpha, {cells.cols(), cells.rows(), 2, 8});
+  const auto* first = reinterpret_cast<const std::uint8_t*>(png.data());
+  return {first, first + png.size()};
 }
 
 }  // namespace roadfix

@@ -29,6 +29,11 @@ TEST(FeatureMapCodec, EveryCellValueComesBack) {
   EXPECT_EQ(decode_feature_map(encode_feature_map(cells), kEnough).cells, cells);
 }
 
+TEST(FeatureMapCodec, WritesGreyAndAlphaAndNoColours) {
+  constexpr std::size_t kColourType = 25;  // W3C PNG 11.2.2
+  EXPECT_EQ(encode_feature_map(CellArray(3, 2, kRoad)).at(kColourType), 4);
+}
+
 TEST(FeatureMapCodec, AMaskOf255IsRoad) {
   const cv::Mat mask = (cv::Mat_<uchar>(1, 2) << 0, 255);
   const CellArray cells = decode_feature_map(encoded(".png", mask), kEnough).cells;

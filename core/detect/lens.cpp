@@ -60,12 +60,14 @@ cv::Matx33d Lens::intrinsics() const { return {focal_px_, 0, principal_.x, 0, fo
 
 std::vector<cv::Point2d> Lens::pixels_of(const std::vector<cv::Point2d>& rays) const {
   std::vector<cv::Point2d> pixels;
+  pixels.reserve(rays.size());
   if (distortion_.empty()) {
     for (const cv::Point2d& ray : rays) pixels.push_back(ray * focal_px_ + principal_);
   } else if (model_ == LensModel::kFisheye) {
     cv::fisheye::distortPoints(rays, pixels, intrinsics(), distortion_);
   } else {
     std::vector<cv::Point3d> points;
+    points.reserve(rays.size());
     for (const cv::Point2d& ray : rays) points.emplace_back(ray.x, ray.y, 1.0);
     cv::projectPoints(points, cv::Vec3d(), cv::Vec3d(), intrinsics(), distortion_, pixels);
   }

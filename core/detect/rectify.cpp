@@ -83,7 +83,7 @@ class GroundToFrame {
       const cv::Point2d ground = first_m_ + gsd_m_ * cv::Point2d(static_cast<double>(col) + 0.5, row + 0.5);
       const cv::Vec3d at = camera_from_level_ * cv::Vec3d(ground.x, ground.y, agl_m_);
       const cv::Point2d ray(at[0] / at[2], at[1] / at[2]);
-      seen[col] = at[2] > 0.0 && std::hypot(ground.x, ground.y) <= max_range_m_ && lens_.within(ray);
+      seen[col] = at[2] > 0.0 && ground.dot(ground) <= max_range_m_ * max_range_m_ && lens_.within(ray);
       if (seen[col]) rays[col] = ray;
     }
     std::vector<cv::Point2d> pixels = lens_.pixels_of(rays);

@@ -125,7 +125,7 @@ DrawnQueries simulated(const QuerySet& set, const MapView& map, const MapView& f
   const RoadGrid searched = on_two_maps ? whole(map) : RoadGrid{};
   const Observed in_ground = seen_by(grid);
   const Observed in_map = on_two_maps ? seen_by(searched) : Observed([](GridPoint) { return true; });
-  const auto cells = [&](double side_m) { return static_cast<int>(std::lround(side_m / from.cell_m)); };
+  const auto cells = [&](double side_m) { return std::max(1, static_cast<int>(std::lround(side_m / from.cell_m))); };
   const PoseSampling sampling{without(from.extent, set.exclude), set.footprint,
                               [&](GridPoint p) { return in_ground(p) && in_map(p); }};
   const auto show = [&](const GridPose& pose, Random& random, Query& query) {

@@ -54,8 +54,8 @@ std::array<GridPoint, 4> corners(const Footprint& footprint, const GridPose& pos
 GroundImage cut_out(const Orthoimage& all, const GridPose& pose, const Footprint& footprint, double gsd_m) {
   const Orthoimage imagery = around(all, pose.position, footprint, gsd_m);
   const GroundImage& from = imagery.image;
-  const cv::Size size(static_cast<int>(std::lround(footprint.width_m / gsd_m)),
-                      static_cast<int>(std::lround(footprint.height_m / gsd_m)));
+  const auto pixels_of = [&](double metres) { return std::max(1, static_cast<int>(std::lround(metres / gsd_m))); };
+  const cv::Size size(pixels_of(footprint.width_m), pixels_of(footprint.height_m));
   const double step = gsd_m / from.gsd_m;
   const double c = step * cos(pose.heading);
   const double s = step * sin(pose.heading);

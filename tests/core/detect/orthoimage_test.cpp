@@ -62,6 +62,13 @@ TEST(OrthoimageCutOut, FarBeyondTheImageryNothingIsObserved) {
   EXPECT_EQ(cv::countNonZero(cut.observed), 0);
 }
 
+TEST(OrthoimageCutOut, OfLessGroundThanAPixelShowsIsOnePixel) {
+  const Orthoimage ortho = coordinates(40, 40);
+  const GroundImage cut = cut_out(ortho, {{1010.25, 1989.75}, Angle()}, {0.1, 0.2}, 0.5);
+  ASSERT_EQ(cut.pixels.size(), cv::Size(1, 1));
+  EXPECT_EQ(cut.pixels.at<cv::Vec3b>(0, 0), cv::Vec3b(20, 20, 0));
+}
+
 TEST(OrthoimageCutOut, TakesWiderImageryThanOpenCvWarps) {
   const Orthoimage ortho = coordinates(33'000, 40);
   const double east_m = 1000.0 + 32'900 * 0.5;

@@ -1,15 +1,13 @@
-// The page's list of maps over several answers of the service: node maps_test.mjs PATH/TO/maps.js
+// The page's list of maps over several answers of the service: node maps_test.mjs FOLDER/OF/THE/PAGE
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { load, run } from './page.mjs';
 
-// As a data: URL, since node takes a .js file outside of a package for no module.
-const text = readFileSync(process.argv[2], 'utf8');
-const { choiceOf, heightsOf, linesOf, stepTo } = await import(`data:text/javascript,${encodeURIComponent(text)}`);
+const { choiceOf, heightsOf, linesOf, stepTo } = await load('maps.js');
 
 const ready = (name, version = '1', bbox = [38, 37, 39, 38]) => ({ name, version, status: 'ready', bbox });
 const texts = (maps, chosen) => linesOf(maps, chosen).map((line) => line.text);
 
-const cases = {
+await run({
   'the first map with ground is chosen, then the choice stays'() {
     assert.equal(choiceOf([], ''), null);
     assert.equal(choiceOf([{ name: 'a', status: 'empty' }, ready('b'), ready('c')], ''), 'b');
@@ -67,9 +65,4 @@ const cases = {
     }
     assert.equal(stepTo([ready('a', '2', [38.5, 37.5, 50, 50])], 'a', shown), 'redraw');
   },
-};
-
-for (const [name, check] of Object.entries(cases)) {
-  check();
-  console.log(`ok: ${name}`);
-}
+});

@@ -1,5 +1,6 @@
 // Tiles of the map and of what lies over it. A browser opens six connections to a service: with more tiles at a time,
 // what is asked of a track would wait behind pictures that come over a slow link or are searched for, until it is given up.
+// Two of the map, two of what lies over it and the line of a track leave one.
 
 const FIRST_PAUSE_MS = 1000;
 const LONGEST_PAUSE_MS = 10_000;

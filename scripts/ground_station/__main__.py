@@ -51,6 +51,13 @@ def parse_address(text):
     return host.strip("[]"), int(port)
 
 
+def parse_seconds(text):
+    seconds = float(text)
+    if not seconds >= 0.0:
+        raise argparse.ArgumentTypeError(f"'{text}': write a number of seconds")
+    return seconds
+
+
 def parse_arguments(arguments):
     parser = argparse.ArgumentParser(
         prog="ground_station", usage="%(prog)s [steps] --map MAP [option ...]", description=__doc__,
@@ -70,14 +77,14 @@ def parse_arguments(arguments):
     parser.add_argument("--live", action="store_true",
                         help="of the steps that wait send only the newest; without it all of them, as of a recording")
     parser.add_argument("--state", help="file that keeps the track, so that a client that is started again goes on with it")
-    parser.add_argument("--patience", type=float, default=60.0, metavar="S",
+    parser.add_argument("--patience", type=parse_seconds, default=60.0, metavar="S",
                         help="retry a step for S seconds while the service is unreachable or busy (default: %(default)g; "
                              "keep 60 or more: a search can take 30 s). Half of what is left is the time for an "
                              "answer; a repetition gets what the service has computed meanwhile")
     parser.add_argument("--format", choices=(*FORMATS_WITHOUT_AGE, *FORMATS_WITH_AGE),
                         help="message for the autopilot (docs/tracks.md)")
     parser.add_argument("--send", type=parse_address, metavar="HOST:PORT", help="where to send it by UDP")
-    parser.add_argument("--max-age", type=float, default=0.5, metavar="S",
+    parser.add_argument("--max-age", type=parse_seconds, default=0.5, metavar="S",
                         help="drop positions older than S seconds from capture (monotonic_s, else time_us where it is "
                              "of this computer's clock, else when its line came) to sending (default: %(default)g); of "
                              + " and ".join(FORMATS_WITH_AGE) + ", which say how old they are, the time that the "

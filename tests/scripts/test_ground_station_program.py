@@ -172,12 +172,13 @@ class Program(unittest.TestCase):
         self.assertEqual(program.returncode, 2)
         self.assertIn("--track map: the map is that of --map", program.stderr)
 
-    def test_refuses_an_address_without_a_port_that_there_is(self):
-        for address in ("127.0.0.1", "127.0.0.1:65536"):
-            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", "--format", "nmea", "--send",
-                                      address], capture_output=True, text=True, timeout=60)
+    def test_refuses_addresses_and_times_that_there_are_not(self):
+        for option, value, remedy in (("--send", "127.0.0.1", "write HOST:PORT"), ("--patience", "nan", "write a number"),
+                                      ("--send", "127.0.0.1:65536", "write HOST:PORT"), ("--max-age", "-1", "write a number")):
+            program = subprocess.run([sys.executable, "-B", str(PROGRAM), "--map", "m", option, value],
+                                     capture_output=True, text=True, timeout=60)
             self.assertEqual(program.returncode, 2)
-            self.assertIn(f"'{address}': write HOST:PORT", program.stderr)
+            self.assertIn(f"argument {option}: '{value}': {remedy}", program.stderr)
 
     def test_vouches_for_a_start_only_where_it_would_know_of_it_after_a_restart(self):
         with FakeService() as fake, tempfile.TemporaryDirectory() as folder:

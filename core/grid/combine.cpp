@@ -12,6 +12,7 @@
 #include "core/grid/cell_size.hpp"
 #include "core/grid/log_odds.hpp"
 #include "core/units/error.hpp"
+#include "core/units/index_range.hpp"
 
 namespace roadfix {
 namespace {
@@ -60,14 +61,29 @@ struct LogOddsSums {
   std::vector<std::uint8_t> count;
 };
 
+std::array<float, kRoad + 1> log_odds_of_cells() {
+  std::array<float, kRoad + 1> all{};
+  for (Cell cell = kNoRoad; cell <= kRoad; ++cell) all[cell] = static_cast<float>(log_odds(cell));
+  return all;
+}
+
+/// Of so many columns or rows those that reach between the two: bilinear() gives nothing of what lies beyond.
+IndexRange reached(double low, double high, int count) {
+  return {std::max(0, static_cast<int>(std::floor(low))), std::min(count, static_cast<int>(std::ceil(high)))};
+}
+
 void add(const PlacedFeatures& part, CellPosition nadir, int cols, int rows, LogOddsSums& sums) {
+  static const std::array<float, kRoad + 1> kLogOdds = log_odds_of_cells();
   const Placement placement = placement_in(part, nadir);
-  for (int row = 0; row < rows; ++row) {
-    for (int col = 0; col < cols; ++col) {
+  const Box box = box_of({&part, 1});
+  const IndexRange across = reached(nadir.col + box.left, nadir.col + box.right, cols);
+  const IndexRange along = reached(nadir.row + box.front, nadir.row + box.back, rows);
+  for (int row = along.first; row < along.end; ++row) {
+    for (int col = across.first; col < across.end; ++col) {
       const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
       if (!is_observed(cell)) continue;
       const auto i = static_cast<std::size_t>(row) * static_cast<std::size_t>(cols) + static_cast<std::size_t>(col);
-      sums.sum[i] += static_cast<float>(log_odds(cell));
+      sums.sum[i] += kLogOdds[cell];
       ++sums.count[i];
     }
   }

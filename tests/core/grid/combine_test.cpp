@@ -3,11 +3,16 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <random>
+#include <vector>
 
+#include "core/grid/log_odds.hpp"
 #include "core/grid/resample.hpp"
+#include "core/units/draws.hpp"
 #include "core/units/error.hpp"
 #include "tests/support/ascii_map.hpp"
 #include "tests/support/code_of.hpp"
+#include "tests/support/random_cells.hpp"
 #include "tests/support/street_map.hpp"
 
 namespace roadfix {
@@ -76,6 +81,33 @@ TEST(Combined, TakesTheMeanOfTheLogOddsWhereFramesOverlap) {
   const PlacedFeatures parts[] = {{sure, {}}, {unsure, {}}};
   const double odds = std::sqrt(9.0);
   EXPECT_NEAR(probability(combined(parts, kPlenty).cells.at(0, 0)), odds / (1.0 + odds), 0.01);
+}
+
+TEST(Combined, EachCellIsOfAllFramesThatShowItHoweverTheyLie) {
+  std::mt19937_64 random(5);
+  std::vector<PlacedFeatures> parts;
+  for (int i = 0; i < 8; ++i) {
+    const BodyOffset offset{uniform(random, -30.0, 30.0), uniform(random, -30.0, 30.0),
+                            Angle::degrees(uniform(random, -180.0, 180.0))};
+    parts.push_back({FeatureMap::centred(testing::random_cells(random, 6 + i, 9, 0.2), 2.0), offset});
+  }
+  const FeatureMap result = combined(parts, kPlenty);
+  for (int row = 0; row < result.cells.rows(); ++row) {
+    for (int col = 0; col < result.cells.cols(); ++col) {
+      double sum = 0.0;
+      int frames = 0;
+      for (const PlacedFeatures& part : parts) {
+        const Placement placement = placement_in(part, result.nadir);
+        const Cell cell = bilinear(part.features.cells, placement.source_of(col + 0.5, row + 0.5));
+        if (!is_observed(cell)) continue;
+        sum += log_odds(cell);
+        ++frames;
+      }
+      const Cell expected = frames > 0 ? cell_from_log_odds(sum / frames) : kUnobserved;
+      EXPECT_EQ(is_observed(result.cells.at(col, row)), is_observed(expected)) << col << ' ' << row;
+      EXPECT_NEAR(result.cells.at(col, row), expected, 1) << col << ' ' << row;
+    }
+  }
 }
 
 TEST(Combined, FramesCutFromAMapAlongAFlightGiveTheMapBack) {

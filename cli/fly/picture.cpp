@@ -96,22 +96,18 @@ cv::Mat shades(const RoadGrid& grid) {
   return grey;
 }
 
-void lay_imagery(Backdrop& backdrop, const Orthoimage& imagery) {
-  const double scale = backdrop.gsd_m / imagery.image.gsd_m;
-  const double x = (backdrop.box.min.east_m - imagery.north_west.east_m) / imagery.image.gsd_m;
-  const double y = (imagery.north_west.north_m - backdrop.box.max.north_m) / imagery.image.gsd_m;
-  const cv::Matx23d source_from_target(scale, 0.0, x + 0.5 * scale - 0.5, 0.0, scale, y + 0.5 * scale - 0.5);
-  const cv::Mat colour = evaluation::coloured(imagery.image.pixels);
-  cv::Mat smooth;  // not in place: the vehicle looks at these pixels
-  const int side = scale > 1.0 ? 1 + static_cast<int>(scale) : 1;
-  cv::blur(colour, smooth, cv::Size(side, side));
+void lay_imagery(Backdrop& backdrop, const Orthoimage& all) {
+  const Orthoimage imagery = part_within(all, backdrop.box);
+  const GridBox box = imagery.box();
+  const auto pixel = [&](GridPoint point) { return cv::Point(backdrop.at(point)); };  // the nearest corner of pixels
+  const cv::Rect place = cv::Rect(pixel({box.min.east_m, box.max.north_m}), pixel({box.max.east_m, box.min.north_m})) &
+                         cv::Rect({}, backdrop.pixels.size());
+  if (place.empty()) return;
   cv::Mat shown;
   cv::Mat observed;
-  const int flags = cv::INTER_LINEAR | cv::WARP_INVERSE_MAP;
-  cv::warpAffine(smooth, shown, source_from_target, backdrop.pixels.size(), flags);
-  cv::warpAffine(imagery.image.observed, observed, source_from_target, backdrop.pixels.size(),
-                 cv::INTER_NEAREST | cv::WARP_INVERSE_MAP);
-  shown.copyTo(backdrop.pixels, observed);
+  cv::resize(evaluation::coloured(imagery.image.pixels), shown, place.size(), 0, 0, cv::INTER_AREA);
+  cv::resize(imagery.image.observed, observed, place.size(), 0, 0, cv::INTER_NEAREST);
+  shown.copyTo(backdrop.pixels(place), observed);
 }
 
 }  // namespace

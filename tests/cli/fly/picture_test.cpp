@@ -21,5 +21,22 @@ TEST(Backdrop, LeavesTheImageryThatTheVehicleLooksAtAsItWas) {
   EXPECT_EQ(cv::norm(imagery.image.pixels, before, cv::NORM_INF), 0.0);
 }
 
+TEST(Backdrop, ShowsImageryThatIsWiderThanOpenCvWarps) {
+  const RoadGrid plain{{16.0, {20'000, -250'000}, 2500, 10}, CellArray(2500, 10, kNoRoad)};
+  const MapView map = testing::view_of(plain);
+  Orthoimage imagery;
+  imagery.image.pixels = cv::Mat(160, 40'000, CV_8UC1, cv::Scalar::all(50));
+  imagery.image.pixels.colRange(20'000, 40'000) = 120;
+  imagery.image.observed = cv::Mat(160, 40'000, CV_8UC1, cv::Scalar::all(255));
+  imagery.image.observed.colRange(30'000, 40'000) = 0;
+  imagery.north_west = {map.extent.min.east_m, map.extent.max.north_m};
+  const cv::Mat shown = backdrop_of(map, &imagery, 1000).pixels;
+  ASSERT_EQ(shown.size(), cv::Size(1000, 4));
+  for (const auto& [col, grey] : {std::pair{0, 50}, {499, 50}, {500, 120}, {749, 120}, {750, 235}, {999, 235}}) {
+    for (const int row : {0, 3})
+      EXPECT_EQ(shown.at<cv::Vec3b>(row, col), cv::Vec3b::all(static_cast<uchar>(grey))) << col;
+  }
+}
+
 }  // namespace
 }  // namespace roadfix::fly

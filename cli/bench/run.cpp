@@ -46,9 +46,18 @@ struct Drawing {
   std::span<const Orthoimage> imagery;
 };
 
+/// Below the folder, also of frames that lie elsewhere than below their table.
+std::filesystem::path picture_of(const std::string& query, const std::filesystem::path& folder) {
+  std::filesystem::path file = folder;
+  for (const auto& part : std::filesystem::path(query + ".jpg").relative_path().lexically_normal()) {
+    file /= part == ".." ? "_" : part;
+  }
+  return file;
+}
+
 void draw_picture(const Method& method, const Query& query, const Answer& answer, const Drawing& drawing) {
   if (drawing.folder.empty()) return;
-  const std::filesystem::path file = drawing.folder / (query.id + ".jpg");
+  const std::filesystem::path file = picture_of(query.id, drawing.folder);
   const cv::Mat picture = method.drawn(query, answer, drawing.imagery);
   if (picture.empty()) return;  // nothing to see, say of keypoints in a feature map
   std::error_code failed;

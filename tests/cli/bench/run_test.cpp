@@ -10,6 +10,7 @@
 #include <stop_token>
 
 #include "core/units/error.hpp"
+#include "core/units/file.hpp"
 #include "tests/cli/bench/bench_run.hpp"
 
 namespace roadfix::bench {
@@ -45,6 +46,18 @@ TEST_F(BenchRun, DrawsEveryQueryWhereAFolderIsNamed) {
     const cv::Mat picture = cv::imread(options.pictures / file);
     ASSERT_FALSE(picture.empty()) << file;
     EXPECT_GT(picture.cols, picture.rows) << file;
+  }
+}
+
+TEST_F(BenchRun, DrawsFramesThatLieElsewhereIntoTheFolderToo) {
+  std::filesystem::create_directory(folder / "tables");
+  std::string table = read_named_file(folder / "frames.csv");
+  table.replace(table.find("frame.png"), 0, "../");
+  std::ofstream(folder / "tables/frames.csv") << table;
+  options.pictures = folder / "pictures";
+  run(R"({"map": "town", "frames": "tables/frames.csv"})", R"("roads", "sift")");
+  for (const char* file : {"1-roads/_/frame.png.jpg", "1-sift/_/frame.png.jpg"}) {
+    EXPECT_FALSE(cv::imread(options.pictures / file).empty()) << file;
   }
 }
 

@@ -87,6 +87,14 @@ TEST_F(Queries, TellOnlyCirclesThatMeetTheMap) {
   EXPECT_THROW(drawn(), InvalidInput);
 }
 
+TEST_F(Queries, ShowACellWhereTheirFootprintIsSmaller) {
+  set_.footprint = {0.4 * map_.cell_m, 3.0 * map_.cell_m};
+  for (const Query& query : drawn_on(map_)) {
+    EXPECT_EQ(query.features.value().cells.cols(), 1);
+    EXPECT_EQ(query.features.value().cells.rows(), 3);
+  }
+}
+
 TEST_F(Queries, ShowOfAnotherMapOnlyGroundThatLiesOnTheSearchedOne) {
   const MapView west = testing::view_of(testing::street_map(5, {2.0, {300'000, -3'200'000}, 250, 400}));
   set_.from = "newer";

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdint>
 #include <initializer_list>
-#include <sstream>
 
 #include "cli/bench/quality.hpp"
 #include "core/search/search.hpp"
@@ -205,15 +204,13 @@ Manifest read_manifest(const std::filesystem::path& file) {
 
 Manifest with_methods(Manifest manifest, std::string_view names) {
   std::vector<MethodName> wanted;
-  std::istringstream words{std::string(names)};
-  // Of an empty list one name is read, which no method has.
-  for (std::string name; std::getline(words, name, ',') || wanted.empty();) {
-    const auto method = value_of(kMethodNames, trimmed(name));
+  for (const std::string_view name : split(names, ',')) {
+    const auto method = value_of(kMethodNames, name);
     if (!method || !has_method(manifest, *method)) {
       std::vector<std::string_view> known;
       for (const MethodName one : manifest.methods) known.push_back(to_string(one));
-      throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}",
-                                                       trimmed(name), fmt::join(known, ", ")));
+      throw InvalidInput("method-unknown", fmt::format("--methods: the manifest has no method '{}'; it has {}", name,
+                                                       fmt::join(known, ", ")));
     }
     wanted.push_back(*method);
   }

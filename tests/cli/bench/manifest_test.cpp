@@ -145,7 +145,7 @@ TEST(Manifest, IsAskedForSomeOfItsMethodsButForNoOther) {
   const Manifest manifest = parse_manifest(kManifest, ".");
   EXPECT_THAT(with_methods(manifest, "sift, roads").methods, ElementsAre(MethodName::kRoads, MethodName::kSift));
   EXPECT_THAT(with_methods(manifest, "sift").methods, ElementsAre(MethodName::kSift));
-  for (const char* names : {"sift,surf", "orb", "roads,,sift", ""}) {
+  for (const char* names : {"sift,surf", "orb", "roads,,sift", "roads,", ""}) {
     EXPECT_THAT([&] { with_methods(manifest, names); }, ThrowsMessage<InvalidInput>(HasSubstr("no method '"))) << names;
   }
 }

@@ -132,7 +132,7 @@ void run_fly(const FlyOptions& options) {
   const Ground ground = ground_of(options, map);
   const fly::FlightPlan plan = plan_of(options, map, ground);
   fly::Campaign campaign = campaign_of(options, map, ground, plan);
-  fly::FlightPictures pictures(map, ground.imagery ? &*ground.imagery : nullptr, ground.footprint, options.pictures);
+  fly::FlightPictures pictures(map, ground.imagery.get(), ground.footprint, options.pictures);
   campaign.watch = [&](const std::string& filter, const fly::Record& record, const fly::Localizer& localizer) {
     pictures.show(filter, record, localizer);
   };

@@ -49,7 +49,7 @@ void look_at_map(const FlyOptions& options, const MapView& map, Ground& ground) 
 }
 
 void look_at_imagery(const FlyOptions& options, const MapView& map, Ground& ground) {
-  ground.imagery = read_orthoimage(options.over, map.zone);
+  ground.imagery = std::make_unique<const Orthoimage>(read_orthoimage(options.over, map.zone));
   ground.box = ground.imagery->box();
   ground.sensor = ground.detector ? fly::make_imaging_sensor(*ground.imagery, *ground.detector, ground.footprint,
                                                              options.camera, map.cell_m)

@@ -18,7 +18,7 @@ MapView map_of(const FlyOptions& options);
 
 /// The ground that the vehicle looks at, whichever it is.
 struct Ground {
-  std::optional<Orthoimage> imagery;
+  std::unique_ptr<const Orthoimage> imagery;  ///< null where there is none; the sensor looks at it
   std::shared_ptr<const RoadDetector> detector;
   std::unique_ptr<fly::Sensor> sensor;     ///< null where flights were recorded
   std::vector<fly::Recording> recordings;  ///< empty where flights are simulated

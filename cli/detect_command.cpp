@@ -23,6 +23,7 @@
 #include "core/detect/detectors.hpp"
 #include "core/detect/feature_map_codec.hpp"
 #include "core/detect/image_codec.hpp"
+#include "core/grid/cell_moments.hpp"
 #include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
@@ -123,30 +124,24 @@ void require_own_world_file(const Job& job) {
                                  world.string(), job.image, job.target));
 }
 
-double mean_probability(const CellArray& cells) {
-  double sum = 0.0;
-  for (const Cell cell : cells.cells()) {
-    if (is_observed(cell)) sum += probability(cell);
-  }
-  return cells.observed_count() == 0 ? 0.0 : sum / static_cast<double>(cells.observed_count());
-}
-
 nlohmann::json json_of(const Job& job, const api::Features& features) {
   nlohmann::json answer = api::detection_json(features);
   answer["image"] = job.image;
   answer["feature_map"] = job.target;
-  answer["observed_cells"] = features.map.cells.observed_count();
-  answer["mean_probability"] = mean_probability(features.map.cells);
+  const CellMoments moments = moments_of(features.map.cells);
+  answer["observed_cells"] = moments.count;
+  answer["mean_probability"] = moments.mean();
   return answer;
 }
 
 std::string text_of(const Job& job, const api::Features& features) {
   const FeatureMap& map = features.map;
+  const CellMoments moments = moments_of(map.cells);
   return fmt::format(
       "{}: {} x {} cells of {} m, {} observed, mean probability of road {:.3f}, {:.0f} ms\n"
       "UAV above column {:.1f}, row {:.1f}{}\n{}",
-      job.target, map.cells.cols(), map.cells.rows(), map.cell_m, map.cells.observed_count(),
-      mean_probability(map.cells), features.detect_time.value().count(), map.nadir.col, map.nadir.row,
+      job.target, map.cells.cols(), map.cells.rows(), map.cell_m, moments.count, moments.mean(),
+      features.detect_time.value().count(), map.nadir.col, map.nadir.row,
       map.nadir_sigma_m > 0.0 ? fmt::format(", known to {:.1f} m (1 sigma per axis) and {:.1f} degrees",
                                             map.nadir_sigma_m, map.nadir_heading_sigma.degrees())
                               : "",

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "cli/command.hpp"
@@ -51,11 +51,11 @@ GeoPose parse_pose(std::string_view text, const std::string& where) {
 
 /// One pose a line; empty lines and a first line of column names are skipped.
 void read_poses(const std::string& path, std::vector<GeoPose>& poses) {
-  std::istringstream in(read_named_file(path));
+  const std::string text = read_named_file(path);
   int number = 0;
-  for (std::string line; std::getline(in, line);) {
-    if (++number == 1) line = without_byte_order_mark(line);
-    if (!line.empty() && line.back() == '\r') line.pop_back();
+  for (std::string_view line : split(without_byte_order_mark(text), '\n')) {
+    ++number;
+    if (line.ends_with('\r')) line.remove_suffix(1);
     if (line.empty() || (number == 1 && line.starts_with("lat"))) continue;
     poses.push_back(parse_pose(line, fmt::format("{} line {}", path, number)));
   }

@@ -1,7 +1,7 @@
 // Truth of real frames: a CSV with a header line, columns file, lat, lon, heading_deg in any order, and in each row
 // either gsd_m, or agl_m or alt_m with fov_deg or focal_px and what else is known of the camera (roll_deg, pitch_deg,
-// principal_px, lens, distortion: named and measured as in FrameCamera, several numbers separated by blanks).
-// Optionally sequence and time_s; others are ignored.
+// attitude_sigma_deg, principal_px, lens, distortion: named and measured as in FrameCamera, several numbers separated
+// by blanks). Optionally sequence and time_s; others are ignored.
 #pragma once
 
 #include <filesystem>

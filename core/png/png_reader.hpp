@@ -23,8 +23,7 @@ struct PngShape {
 
 enum class PngOrigin {
   /// A plain grey image as encode_plain_png() writes them: anything else is refused. 16 bits are big-endian, as they
-  /// are
-  /// stored.
+  /// are stored.
   kOwn,
   /// Any program: pixels as OpenCV keeps them. Grey, BGR or BGR with alpha; palettes are looked up, and a colour that
   /// stands for nothing (tRNS) is transparent. 16 bits are in the processor's order.

@@ -108,6 +108,21 @@ TEST(Clusters, TellTheirScale) {
   EXPECT_NEAR(clusters[0].log_scale_sigma, 0.1 * std::sqrt(0.25 * 0.75), 1e-12);
 }
 
+TEST(Clusters, HoldTogetherWhatLiesInSquaresOf20MetresThatTouch) {
+  const auto count = [](double apart_m) {
+    return clusters_of(particles_of({{1, 1, 0, 0, 0, 0.5}, {1 + apart_m, 1, 0, 0, 0, 0.5}}, 1)).size();
+  };
+  EXPECT_EQ(count(38.0), 1U);
+  EXPECT_EQ(count(40.0), 2U);
+}
+
+TEST(Clusters, WeighNoMoreThanAllThoughTheSumRounds) {
+  Particles p;
+  p.resize(9);
+  std::ranges::fill(p.weight, 1.0 / 9.0);
+  EXPECT_EQ(heaviest_of(p).weight, 1.0);
+}
+
 TEST(Clusters, LeaveOutWhatHasNoWeight) {
   const auto clusters = clusters_of(particles_of({{0, 0, 0, 5, 1, 1.0}, {900, 0, 0, 5, 1, 0.0}}, 100));
   EXPECT_EQ(clusters.size(), 1U);

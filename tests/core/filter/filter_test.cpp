@@ -92,6 +92,24 @@ TEST(Filter, DrawsAllParticlesOfACircleWithinIt) {
   EXPECT_NEAR(mean_square, 80.0 * 80.0 / 2.0, 100.0) << "as far out as a uniform density lies";
 }
 
+TEST(Filter, FindsTheCircleOfALargeBoxHoweverSmallItIs) {
+  PoseRegion circle{{{0.0, 0.0}, {1e6, 1e6}}, GridCircle{{300.0, 500.0}, 1.0}, Angle(), Angle()};
+  Filter filter({}, {circle}, 7);
+  filter.start_uniformly(circle);
+  EXPECT_LE(std::abs(*std::ranges::max_element(filter.particles().east_m) - 300.0), 1.0);
+}
+
+TEST(Filter, DrawsHeadingsOfAllTheRangeThatIsTold) {
+  PoseRegion half = kSquare;
+  half.heading = Angle::radians(1.0);
+  half.heading_half_width = Angle::radians(0.5);
+  Filter filter({}, {kSquare}, 7);
+  filter.start_uniformly(half);
+  const std::vector<double>& headings = filter.particles().heading_rad;
+  EXPECT_NEAR(*std::ranges::min_element(headings), 0.5, 0.001);
+  EXPECT_NEAR(*std::ranges::max_element(headings), 1.5, 0.001);
+}
+
 TEST(Filter, MovesCopiesOfAParticleApartAndLeavesWhatWasDrawnOnce) {
   FilterOptions options;
   options.adapts_count = false;
@@ -324,6 +342,14 @@ TEST(Filter, DrawsScaleAndDriftOfNewParticlesAndKeepsTheScaleWithinItsRange) {
     filter.predict(PlanarMotion{{0.0, 0.0}, {0.0, 0.0}, 1.0});
     EXPECT_TRUE(filter.correct(seen_at(p, {300.0, 300.0}, 3.0)).usable);
   }
+}
+
+TEST(Filter, SpreadsItsBeliefByAsMuchAsItIsTold) {
+  Filter filter({}, {kSquare}, 5);
+  start_at(filter, {{{0.0, 0.0}, Angle()}, {}, 1.0});
+  filter.widen(4.0);
+  EXPECT_NEAR(sigma_of(filter.particles().east_m), 4.0, 0.14);
+  EXPECT_NEAR(sigma_of(filter.particles().north_m), 4.0, 0.14);
 }
 
 TEST(Filter, WidensTheDriftOfItsParticlesAndDrawsNewOnesWithAsMuch) {

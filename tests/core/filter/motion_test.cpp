@@ -90,16 +90,17 @@ TEST(PlanarMotion, CarriesParticlesWithTheirWind) {
   EXPECT_NEAR(end.north_m, -2.0, 1e-12);
 }
 
-/// Of the drift to the east after ten seconds, m2/s2, begun at none and moved in so many steps.
-double drift_variance(const auto& motion, int steps, int particles) {
-  double variance = 0.0;
+/// Of the drift along each axis after ten seconds, m2/s2, begun at none and moved in so many steps.
+GridPoint drift_variance(const auto& motion, int steps, int particles) {
+  GridPoint variance;
   for (int i = 0; i < particles; ++i) {
     ParticleState state;
     for (int k = 0; k < steps; ++k) {
       RandomStream random(Draw::kMotion, {7, static_cast<std::uint64_t>(k), static_cast<std::uint64_t>(i)});
       motion(state, random);
     }
-    variance += state.drift_east_m_s * state.drift_east_m_s / particles;
+    variance.east_m += state.drift_east_m_s * state.drift_east_m_s / particles;
+    variance.north_m += state.drift_north_m_s * state.drift_north_m_s / particles;
   }
   return variance;
 }
@@ -112,9 +113,12 @@ TEST(Motion, ChangesTheWindAsMuchInOneStepAsInMany) {
   for (const int steps : {1, 10, 100}) {
     const double seconds = 10.0 / steps;
     const PlanarMotion planar{{0.0, 0.0}, {0.0, 0.0}, seconds, kWalk};
-    EXPECT_NEAR(drift_variance(planar, steps, kParticles), kVariance, tolerance) << steps;
-    EXPECT_NEAR(drift_variance(OdometryMotion({}, {}, seconds, kWalk), steps, kParticles), kVariance, tolerance)
-        << steps;
+    const OdometryMotion odometry({}, {}, seconds, kWalk);
+    for (const GridPoint variance :
+         {drift_variance(planar, steps, kParticles), drift_variance(odometry, steps, kParticles)}) {
+      EXPECT_NEAR(variance.east_m, kVariance, tolerance) << steps;
+      EXPECT_NEAR(variance.north_m, kVariance, tolerance) << steps;
+    }
   }
 }
 
@@ -180,6 +184,8 @@ TEST(OdometryMotion, RefusesWhatIsNoCovarianceAndNoNumber) {
   EXPECT_EQ(refusal({}, {{{1.0, 0.5, 0}, {0.0, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive") << "not symmetric";
   EXPECT_EQ(refusal({}, {{{0.0, 0.5, 0}, {0.5, 1.0, 0}, {0, 0, 1.0}}}), "covariance-not-positive");
   EXPECT_EQ(refusal({kNaN, 0.0, Angle()}, {}), "odometry-not-finite");
+  EXPECT_EQ(refusal({0.0, kNaN, Angle()}, {}), "odometry-not-finite");
+  EXPECT_EQ(refusal({0.0, 0.0, Angle::radians(kNaN)}, {}), "odometry-not-finite");
   EXPECT_EQ(refusal({}, {{{kNaN, 0, 0}, {0, 1.0, 0}, {0, 0, 1.0}}}), "odometry-not-finite");
   EXPECT_EQ(refusal({}, {}), "taken");
 }
@@ -192,6 +198,9 @@ TEST(ConstantVelocityMotion, TakesUpTheVelocityOfTheBodyAlongItsHeading) {
   EXPECT_NEAR(end.drift_north_m_s, -4.0, 1e-12);
   EXPECT_NEAR(end.east_m, 22.0, 1e-12);
   EXPECT_NEAR(end.north_m, -8.0, 1e-12);
+  const ParticleState north = moved(motion);
+  EXPECT_NEAR(north.drift_east_m_s, 3.0, 1e-12);
+  EXPECT_NEAR(north.drift_north_m_s, 10.0, 1e-12);
 }
 
 TEST(ConstantVelocityMotion, SpreadsAsMuchInOneStepAsInMany) {
@@ -223,6 +232,15 @@ TEST(ConstantVelocityMotion, GoesOnAsItWent) {
   EXPECT_NEAR(end.east_m, 21.0, 1e-12);
   EXPECT_NEAR(end.north_m, -7.0, 1e-12);
   EXPECT_EQ(end.heading_rad, 0.5);
+}
+
+TEST(ConstantVelocityMotion, TurnsByWhatIsDoubtedOfItsTurnAndByMoreTheLongerItTakes) {
+  ConstantVelocityMotion motion{4.0, 0.0, 0.1};
+  motion.turn_rad = {0.3, 0.15};
+  const Scatter m = scatter(motion);
+  const double variance = 0.1 * 0.1 * 4.0 + 0.15 * 0.15;
+  EXPECT_NEAR(m.mean[2], 0.3, 5.0 * std::sqrt(variance / kSamples));
+  EXPECT_NEAR(m.covariance[2][2], variance, 5.0 * std::sqrt(2.0 / kSamples) * variance);
 }
 
 TEST(ConstantVelocityMotion, TurnsTheBodyAndNotItsWay) {

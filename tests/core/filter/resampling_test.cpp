@@ -40,6 +40,10 @@ TEST(SystematicResampling, NeverDrawsWhatHasNoWeight) {
   EXPECT_THAT(systematic_ancestors(std::vector{0.0, 1.0}, 2, 0.999), ElementsAre(1, 1));
 }
 
+TEST(SystematicResampling, DrawsTheLastOneWhereWeightsRoundToASumBelowOne) {
+  EXPECT_THAT(systematic_ancestors(std::vector{0.5, 0.49999}, 2, 0.99999), ElementsAre(0, 1));
+}
+
 TEST(KldSampling, AsksForTheChiSquareQuantileOfItsBins) {
   // n = chi2(k - 1, 0.99) / (2 * 0.05); quantiles of the chi-square distribution from tables. The Wilson-Hilferty
   // approximation is good to a few in a thousand from ten degrees of freedom on.
@@ -50,13 +54,19 @@ TEST(KldSampling, AsksForTheChiSquareQuantileOfItsBins) {
 
 TEST(KldSampling, CountsBinsOfChosenParticlesOnce) {
   Particles p;
-  p.resize(4);
+  p.resize(7);
   p.set(0, {1.0, 1.0, 0.01});
   p.set(1, {19.0, 19.0, 0.1});
   p.set(2, {21.0, 1.0, 0.01});
   p.set(3, {1.0, 1.0, 1.0});
   EXPECT_EQ(occupied_bins(p, std::vector<std::size_t>{0, 0, 1, 1}), 1U);
   EXPECT_EQ(occupied_bins(p, std::vector<std::size_t>{0, 1, 2, 3}), 3U);
+  p.set(4, {1.0, 1.0, 0.18, 0.0, 0.0, 0.04});
+  p.set(5, {1.0, 1.0, 0.01, 0.0, 0.0, 0.04});
+  p.set(6, {1.0, 1.0, 0.01, 0.0, 0.0, 0.06});
+  EXPECT_EQ(occupied_bins(p, std::vector<std::size_t>{0, 4}), 2U) << "of 10 degrees";
+  EXPECT_EQ(occupied_bins(p, std::vector<std::size_t>{0, 5}), 1U);
+  EXPECT_EQ(occupied_bins(p, std::vector<std::size_t>{0, 6}), 2U) << "of a twentieth of the scale";
 }
 
 }  // namespace

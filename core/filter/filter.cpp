@@ -19,7 +19,7 @@ constexpr double kRougheningLogScale = 0.003;  // where the region leaves the sc
 /// Returns false, and leaves the weights, where they sum to nothing.
 bool normalise(std::vector<double>& weights) {
   const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
-  if (!(sum > 0.0) || !std::isfinite(sum)) return false;
+  if (!(sum > 0.0)) return false;
   for (double& w : weights) w /= sum;
   return true;
 }

@@ -16,7 +16,7 @@ const double kMaxLogOdds = 2.0 * kMinLogOdds;
 void TrackClaim::accept() { supported = std::min(supported + 1, kMaxSupport); }
 
 void TrackClaim::reject() {
-  supported = std::max<std::int64_t>(0, std::min(supported, kMaxSupport) - 1);
+  supported = std::max<std::int64_t>(0, supported - 1);
   if (!is_supported()) confirmed = false;
   forget_look();
 }

@@ -49,6 +49,7 @@ TEST(Decision, APlaceFarAboveAllOthersIsAFix) {
   EXPECT_GE(decision.probability, 0.99);
   EXPECT_TRUE(decision.reason.empty());
   EXPECT_GT(decision.weights[0], decision.weights[1]);
+  EXPECT_EQ(decided(found(0.8, 0.35, 0.2), decision.probability).status, FixStatus::kFix) << "as sure as asked for";
 }
 
 TEST(Decision, APlaceThatFollowsTheTailOfChanceIsNone) {
@@ -83,6 +84,36 @@ TEST(Decision, NoPlaceThatIsLikelyIsCalledChance) {
   EXPECT_TRUE(likely);
 }
 
+TEST(Decision, AnUnlikelyPlaceIsAmbiguousOnceChanceLetsFewerThanOneInAHundredFitAsWell) {
+  int ambiguous = 0;
+  int by_chance = 0;
+  for (double score = 0.36; score < 0.7; score += 0.01) {
+    SearchResult result = found(score, 0.35, 0.2);
+    result.modes[0].pearson = 0.1;  // so little is no surprise by itself
+    result.modes[1].score = score;
+    const Decision decision = decided(result);
+    if (decision.probability > 0.5) continue;
+    const bool beyond_chance = decision.figures->surprise >= std::log(100.0);
+    EXPECT_EQ(decision.status, beyond_chance ? FixStatus::kAmbiguous : FixStatus::kNoFix) << score;
+    ++(beyond_chance ? ambiguous : by_chance);
+  }
+  EXPECT_GT(ambiguous, 2);
+  EXPECT_GT(by_chance, 2);
+}
+
+TEST(Decision, OfPlacesThatAreAmbiguousThoseAreToldThatAreAHundredthAsLikelyAsTheBest) {
+  std::size_t told = 0;
+  for (double second = 0.7; second < 0.8; second += 0.005) {
+    const SearchResult result = found(0.8, second, 0.2);
+    const Decision decision = decided(result, 0.9999);
+    ASSERT_EQ(decision.status, FixStatus::kAmbiguous) << second;
+    const double ratio = std::exp(result.background.log_likelihood(second) - result.background.log_likelihood(0.8));
+    EXPECT_EQ(decision.weights.size(), ratio >= 0.01 ? 2U : 1U) << second;
+    told += decision.weights.size() - 1;
+  }
+  EXPECT_TRUE(told > 2 && told < 18) << told;
+}
+
 TEST(Decision, PlacesThatFitTooWellForChanceAreAmbiguous) {
   const Decision decision = decided(found(0.85, 0.84, 0.7));
   EXPECT_EQ(decision.status, FixStatus::kAmbiguous);
@@ -100,6 +131,12 @@ TEST(Decision, APlaceThatIsSureButNotAsSureAsAskedIsAmbiguousAndAlone) {
   const Decision doubted = decided(result, 0.9999, false, doubtful);
   EXPECT_EQ(doubted.reason, "below-confidence");
   EXPECT_EQ(doubted.explanation.find("vouches"), std::string::npos) << doubted.explanation;
+  Calibration nearly;
+  nearly.bias = std::log(0.96 / 0.04);
+  nearly.highest = 0.99;
+  const Decision less_sure = decided(result, 0.98, false, nearly);
+  EXPECT_EQ(less_sure.reason, "below-confidence");
+  EXPECT_EQ(less_sure.explanation.find("vouches"), std::string::npos) << "it does for as much as was asked for";
   EXPECT_EQ(decision.weights.size(), 1U);
 }
 
@@ -171,6 +208,22 @@ TEST_F(DecisionBesideOtherPlacesOutside, OneThatChanceDoesNotExplainIsTheReasonW
   EXPECT_EQ(beside({0.39}, 0.38).reason, "not-above-chance") << "nothing fits outside either";
 }
 
+TEST_F(DecisionBesideOtherPlacesOutside,
+       OneThatFitsALittleBetterThanALikelyPlaceIsTheReasonThoughChanceMayExplainBoth) {
+  SearchResult result = found(0.42, 0.35, 0.2);
+  result.outside = {result.modes[0]};
+  result.outside[0].score = 0.425;
+  result.modes[0].pearson = 0.1;
+  Calibration sure;
+  sure.bias = 10.0;
+  sure.highest = 0.9;
+  const Decision decision = decided(result, 0.99, false, sure);
+  ASSERT_LT(decision.figures->surprise, 4.6);
+  EXPECT_GT(decision.probability, 0.25);
+  EXPECT_LT(decision.probability, 0.5);
+  EXPECT_EQ(decision.reason, "better-outside-prior");
+}
+
 TEST_F(DecisionBesideOtherPlacesOutside, ChanceHasAllTheGroundAroundForOneHoweverSmallTheRegion) {
   EXPECT_EQ(beside({0.45}, 0.25, 0.01).reason, "not-above-chance");
   EXPECT_EQ(beside({0.8}, 0.25, 0.01).reason, "better-outside-prior");
@@ -229,7 +282,9 @@ TEST(Decision, WhatATimeLimitEndedIsNoFixHoweverWellItFits) {
   EXPECT_NE(decision.explanation.find("50 %"), std::string::npos);
   half.scanned_share = 1.0;
   half.refined = false;
-  EXPECT_EQ(decided(half, 0.5).reason, "search-time-limit");
+  const Decision unrefined = decided(half, 0.5);
+  EXPECT_EQ(unrefined.reason, "search-time-limit");
+  EXPECT_THAT(unrefined.explanation, HasSubstr("before the candidates were compared at full resolution"));
   half.modes.clear();
   EXPECT_EQ(decided(half, 0.5).reason, "search-time-limit");
 }

@@ -103,7 +103,9 @@ TEST(TrackClaim, ForgetsWhatSpokeAgainstItBeforeMeasurementsSpeakForIt) {
 TEST(TrackClaim, IsLostSoonAlsoWhereItWasRightForLong) {
   TrackClaim claim;
   for (int i = 0; i < 1000; ++i) claim.weigh(10.0);
-  claim.weigh(-kHundredToOne - 0.01);
+  claim.weigh(-kHundredToOne + 0.01);
+  EXPECT_TRUE(claim.outweighs_chance()) << "not by one measurement of less than a hundred to one";
+  claim.weigh(-0.02);
   EXPECT_FALSE(claim.outweighs_chance());
 }
 

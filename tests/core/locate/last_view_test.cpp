@@ -65,7 +65,9 @@ TEST(LastView, IsSeenAgainOnceTheVehicleHasMoved) {
   view.move(forward(0.0), true);
   EXPECT_EQ(view.take_in(street_at(3)), View::kRepeated);
   EXPECT_EQ(view.take_in(street_at(4)), View::kNew);
-  view.move(Odometry{0.0, 0.0, Angle::degrees(-1.0)}, true);
+  view.move(Odometry{0.0, 0.0, Angle::degrees(-0.5)}, true);
+  EXPECT_EQ(view.take_in(street_at(4)), View::kNew) << "it may hover";
+  view.move(Odometry{0.0, 0.0, Angle::degrees(-0.5)}, true);
   EXPECT_EQ(view.take_in(street_at(4)), View::kRepeated);
 }
 
@@ -130,6 +132,17 @@ TEST(LastView, IsAnotherInCellsOfAnotherSize) {
   EXPECT_EQ(view.take_in(street_at(3)), View::kNew);
   view.move(forward(20.0), true);
   EXPECT_EQ(view.take_in(larger), View::kNew);
+  EXPECT_FALSE(is_same_view(street_at(3), larger));
+  for (const int rows : {20, 10}) {
+    EXPECT_EQ(view.take_in(FeatureMap::centred(CellArray(400 / rows, rows, kRoad), 2.0)), View::kNew) << rows;
+    view.move(forward(20.0), true);
+  }
+}
+
+TEST(LastView, OfTwoWoodsIsNotTheSame) {
+  const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
+  EXPECT_FALSE(is_same_view(wood, wood));
+  EXPECT_TRUE(is_same_view(street_at(3), street_at(3)));
 }
 
 TEST(LastView, StandsStillWhereItsRoadsDoNotMoveAsTheOdometryTells) {
@@ -143,6 +156,32 @@ TEST(LastView, StandsStillWhereItsRoadsDoNotMoveAsTheOdometryTells) {
   view.move(forward(1000.0), true);
   EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kStandsStill);
   EXPECT_EQ(view.take_in(crossing_after(10)), View::kNew);
+}
+
+TEST(LastView, IsComparedWhereAQuarterOfItShouldBeSeenAgain) {
+  const auto still_after = [](double forward_m) {
+    std::mt19937_64 random(3);
+    LastView view;
+    EXPECT_EQ(view.take_in(crossing_after(0)), View::kNew);
+    view.move(Odometry{forward_m, 10.0, {}}, true);
+    return view.take_in(noisy(crossing_after(0), 3, random));
+  };
+  EXPECT_EQ(still_after(80.0), View::kStandsStill) << "of 120 m";
+  EXPECT_EQ(still_after(100.0), View::kNew);
+}
+
+TEST(LastView, IsNewOnceGroundWithoutRoadsWasSeen) {
+  std::mt19937_64 random(3);
+  const FeatureMap wood = FeatureMap::centred(CellArray(60, 60, kNoRoad), 2.0);
+  LastView view;
+  EXPECT_EQ(view.take_in(crossing_after(0)), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.take_in(wood), View::kNew);
+  EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kStandsStill);
+  EXPECT_EQ(view.take_in(wood), View::kNew);
+  EXPECT_FALSE(view.stands_still);
 }
 
 TEST(LastView, StandsStillWhereItsPictureDoesThoughItIsEncodedAndMeasuredAnew) {
@@ -194,6 +233,9 @@ TEST(LastView, OfAVehicleThatStaysInPlaceMayStandStill) {
     EXPECT_EQ(view.take_in(crossing_after(10 + i), encoded_anew(sketch)), View::kNew) << "nobody says that it moves";
     view.move(std::nullopt, true);
   }
+  view.move(forward(20.0), true);
+  view.move(std::nullopt, true);
+  EXPECT_EQ(view.take_in(crossing_after(16), encoded_anew(sketch)), View::kNew) << "it may have come back";
 }
 
 TEST(LastView, StandsStillThoughItsHeightIsToldALittleOtherwise) {
@@ -224,6 +266,17 @@ TEST(LastView, OfOneRoadAlongTheWayTellsNothing) {
   }
 }
 
+TEST(LastView, OfARoadAlongTheWayWithAStubBesideItTellsNothing) {
+  FeatureMap stub = FeatureMap::centred(CellArray(60, 60, kNoRoad), 2.0);
+  for (int row = 0; row < 60; ++row) stub.cells.at(35, row) = stub.cells.at(36, row) = kRoad;
+  for (int col = 37; col < 46; ++col) stub.cells.at(col, 20) = stub.cells.at(col, 21) = kRoad;
+  std::mt19937_64 random(3);
+  LastView view;
+  EXPECT_EQ(view.take_in(stub), View::kNew);
+  view.move(forward(20.0), true);
+  EXPECT_EQ(view.take_in(noisy(stub, 1, random)), View::kNew);
+}
+
 TEST(LastView, IsNotComparedWhereTheOdometryDoesNotTellTheMotionOverTheGround) {
   std::mt19937_64 random(3);
   LastView view;
@@ -232,6 +285,9 @@ TEST(LastView, IsNotComparedWhereTheOdometryDoesNotTellTheMotionOverTheGround) {
   EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kNew);
   view.move(std::nullopt, true);
   EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kNew);
+  view.move(forward(20.0), true);
+  view.move(forward(0.0), false);
+  EXPECT_EQ(view.take_in(noisy(crossing_after(0), 3, random)), View::kNew) << "the wind may have taken it back";
 }
 
 TEST_F(Track, FollowsItsOdometryWhereTheCameraHasStopped) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -79,6 +81,7 @@ TEST(StepMotion, LosesAReachWhereNobodyKnowsHowFastTheVehicleIs) {
   LearnedMotion untold = hovered;
   untold.coasted_s = 4.0;
   EXPECT_GE(strays_by_m({}, untold), 0.5 * 9.8 * (5.0 * 5.0 - 4.0 * 4.0)) << "faster from second to second";
+  EXPECT_LT(strays_by_m({}, untold), 0.5 * 11.0 * (5.0 * 5.0 - 4.0 * 4.0)) << "but for this second alone";
 }
 
 TEST(StepMotion, CarriesAReachByASpeedThatIsToldAsFarAsThatMayBeOff) {
@@ -181,6 +184,7 @@ TEST(StepMotion, FollowsOdometryAloneOnceItIsToldAgain) {
     ASSERT_NEAR(p.north_m[i] - before.particles.north_m[i], 30.0 * std::cos(p.heading_rad[i]), 1e-9);
     ASSERT_EQ(p.drift_east_m_s[i], 0.0) << "there is no wind";
   }
+  EXPECT_EQ(motion.learned().coasted_s, 0.0);
 }
 
 /// By how much particles turn, mean and deviation, when a vehicle that turned so fast tells no motion any more.
@@ -220,6 +224,8 @@ TEST(StepMotion, GoesOnTurningForSomeSecondsAndDoubtsIt) {
     EXPECT_NEAR(mean, 36.0 * (1.0 - std::exp(-1.0)), 5.0 * 12.4 / 10.0) << steps;
     EXPECT_NEAR(sigma, 12.4, 5.0 * 12.4 / std::sqrt(200.0)) << steps;
   }
+  // After long 36 degrees in all, doubted by half, and 9.1 by the wandering of 10 s: 19.6.
+  EXPECT_NEAR(turned_by_deg(10.0, 1, 12.0).first, 36.0 * (1.0 - std::exp(-10.0 / 3.0)), 5.0 * 19.6 / 10.0);
   const auto [straight_on, sigma] = turned_by_deg(3.0, 1, 0.0);
   EXPECT_NEAR(straight_on, 0.0, 5.0 * 5.0 / 10.0);
   EXPECT_LT(sigma, 8.0);
@@ -252,6 +258,62 @@ TEST(StepMotion, LearnsADriftOnlyOfOdometry) {
   coasting.try_drifts(filter);
   EXPECT_FALSE(coasting.learned().odometry_is_wrong);
   EXPECT_TRUE(filter.particles() == before);
+}
+
+/// Of their drift to the east, about 0.
+double drift_sigma_m_s(const Filter& filter) {
+  double squares = 0.0;
+  for (const double drift : filter.particles().drift_east_m_s) squares += drift * drift;
+  return std::sqrt(squares / static_cast<double>(filter.particles().size()));
+}
+
+TEST(StepMotion, SpreadsTheDriftOnceByWhatItLearnsThatOdometryMayBeWrongBy) {
+  for (const auto& [speed_m_s, told_m_s, sigma_m_s] :
+       {std::array{20.0, 0.0, 6.0}, {10.0, 0.0, 5.0}, {10.0, 8.0, 8.0}}) {
+    VehicleNoise vehicle;
+    vehicle.wind = {told_m_s};
+    StepMotion flown(vehicle, kFlight, {Odometry{speed_m_s, 0.0, {}}, {}, 1.0}, {BodyVelocity{speed_m_s, 0.0}});
+    Filter filter(FilterOptions::paper(5'000), kFlight, 1);
+    filter.start_uniformly(kFlight.poses);
+    flown.learn_drift(filter);
+    EXPECT_NEAR(drift_sigma_m_s(filter), sigma_m_s, 5.0 * sigma_m_s / std::sqrt(10'000.0)) << speed_m_s;
+    const Particles once = filter.particles();
+    flown.learn_drift(filter);
+    EXPECT_TRUE(filter.particles() == once);
+    flown.begin_anew();
+    EXPECT_TRUE(flown.learned().odometry_is_wrong) << "whatever the belief";
+    EXPECT_FALSE(flown.learned().velocity);
+  }
+}
+
+TEST(StepMotion, TriesOtherDriftsWithATenthOfItsParticlesUnlessAWindIsLearnedAnyway) {
+  for (const double wind_m_s : {0.0, 3.0}) {
+    VehicleNoise vehicle;
+    vehicle.wind = {wind_m_s};
+    const StepMotion motion(vehicle, kFlight, {Odometry{20.0, 0.0, {}}, {}, 1.0}, kFlewAt20MS);
+    Filter filter(FilterOptions::paper(5'000), kFlight, 1);
+    filter.start_uniformly(kFlight.poses);
+    motion.try_drifts(filter);
+    const auto tried = 5'000 - std::ranges::count(filter.particles().drift_east_m_s, 0.0);
+    EXPECT_NEAR(static_cast<double>(tried), wind_m_s > 0.0 ? 0.0 : 500.0, 5.0 * std::sqrt(450.0));
+    EXPECT_NEAR(drift_sigma_m_s(filter), wind_m_s > 0.0 ? 0.0 : std::sqrt(0.1) * 6.0, 0.3);
+  }
+}
+
+TEST(StepMotion, LetsTheErrorOfAnAltitudeWanderWithinItsRangeByThreePercentOfThatInASecond) {
+  VehicleNoise vehicle;
+  vehicle.scale_range = 0.1;
+  AcceptanceRegion flight = kFlight;
+  flight.max_log_scale = 0.1;
+  StepMotion motion(vehicle, flight, {Odometry{20.0, 0.0, {}}, {}, 4.0}, kFlewAt20MS);
+  FilterOptions options = FilterOptions::paper(5'000);
+  options.injected_share = 0.0;
+  Filter filter(options, flight, 1);
+  filter.start_anew_from(std::vector<Proposal>{{{{500.0, 500.0}, Angle()}}}, 0.0, flight.poses);
+  motion.move(filter);
+  double squares = 0.0;
+  for (const double log_scale : filter.particles().log_scale) squares += log_scale * log_scale / 5'000.0;
+  EXPECT_NEAR(std::sqrt(squares), 0.03 * 0.1 * std::sqrt(4.0), 5.0 * 0.006 / std::sqrt(10'000.0));
 }
 
 TEST(StepMotion, TellsTheWayOfAStep) {

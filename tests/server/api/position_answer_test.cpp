@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <string>
 
 #include "server/autopilot/mavlink_frame.hpp"
@@ -82,6 +83,14 @@ TEST(PositionAnswer, SaysWhereTheVehicleIsAndWhenItWasThere) {
   EXPECT_EQ(told["yaw"], 13'140);
 }
 
+TEST(PositionAnswer, SaysHowLongAgoThatWas) {
+  constexpr std::size_t kProcessing = 10 + 8;  // header, and what precedes it in message 296
+  const std::string packet = position_response(kKnown, format_of({{"format", "global_position_sensor"}}), kTime).body;
+  std::uint32_t processing_us = 0;
+  std::memcpy(&processing_us, packet.data() + kProcessing, sizeof(processing_us));
+  EXPECT_EQ(processing_us, 250'000U);
+}
+
 TEST(PositionAnswer, IsAsAccurateAsTheLongerAxisOfItsEllipseWhicheverComesFirst) {
   for (const std::array<double, 2> sigma_m : {std::array{2.5, 1.5}, {1.5, 2.5}}) {
     json answer = kKnown;
@@ -95,6 +104,8 @@ TEST(PositionAnswer, TellsNoYawWhereTheHeadingIsHardlyKnown) {
   answer["heading_sigma_deg"] = 10.5;
   EXPECT_EQ(mavproxy(answer)["yaw"], 0);
   EXPECT_EQ(mavproxy(answer)["lat"], 377'632'000);
+  answer["heading_sigma_deg"] = 10.0;
+  EXPECT_EQ(mavproxy(answer)["yaw"], 13'140);
 }
 
 TEST(PositionAnswer, TurnsTheHeadingOfTheFrameIntoThatOfTheVehicle) {

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -89,6 +90,16 @@ TEST(TrackRequest, TellsHowAVehicleMovesThatNoOdometryTellsOf) {
 TEST(TrackRequest, IsRefusedWhereItTellsMoreOfASpeedThanTheSpeed) {
   for (const char* name : {"speed_sigma_m_s", "turn_rate_deg_s", "turn_rate_sigma_deg_s"}) {
     EXPECT_EQ(refused_track({{name, 1}}), "missing-parameter speed_m_s") << name;
+  }
+}
+
+TEST(TrackRequest, IsRefusedWhereItTellsMoreThanAnyVehicleOrWindIs) {
+  for (const auto& [name, most] : {std::pair("speed_m_s", 300.0),
+                                   {"odometry_share", 1.0},
+                                   {"wind_sigma_m_s", 100.0},
+                                   {"scale_range", kMaxScaleRange}}) {
+    EXPECT_NO_THROW(settings_of({{name, most}})) << name;
+    EXPECT_EQ(refused_track({{name, 1.01 * most}}), std::string("parameter-out-of-range ") + name);
   }
 }
 

@@ -111,6 +111,24 @@ TEST_F(Track, TakesNoSearchForAFixThatItsCalibrationDoubts) {
   EXPECT_FALSE(accepted(0.5));
 }
 
+TEST_F(Track, ClaimsNoPlaceThatNoSearchIsNearlySureOf) {
+  for (const double highest : {0.94, 0.96}) {
+    TrackSettings s = settings();
+    Calibration calibration = *shipped_calibration();
+    calibration.highest = highest;
+    s.calibration = std::make_shared<const Calibration>(calibration);
+    Flight flight(map_, start_, 2);
+    state_ = {};
+    bool claimed = false;
+    const TrackEstimate last = fly(Tracker(view_, s), flight, 15, [&](int, const TrackEstimate& estimate) {
+      claimed = claimed || estimate.converged();
+    });
+    EXPECT_LT(error_m(last, flight.pose()), 12.0);
+    EXPECT_TRUE(state_.claim.outweighs_chance());
+    EXPECT_EQ(claimed, highest > 0.95) << highest;
+  }
+}
+
 TEST_F(Track, ClaimsNoPlaceWhereOneBrightStrokeHidesFaintRoads) {
   // What is seen of the roads is faint, and a line that is none is not: chance agreements with it come often, and
   // particles gather at one of them.

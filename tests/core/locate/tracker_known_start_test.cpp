@@ -69,6 +69,14 @@ TEST_F(KnownStart, ThatIsWrongIsFoundOutWhereStreetsDiffer) {
   EXPECT_GT(claimed, 10);
 }
 
+TEST_F(KnownStart, IsNotBorneOutByASearchThatLooksNowhereElse) {
+  Flight flight = flight_over(map_, start_, 4);
+  const TrackEstimate first = advance(Tracker(view_, settings_at(start_)), flight.step());
+  EXPECT_EQ(first.measurement, Measurement::kSearched);
+  EXPECT_TRUE(first.since_accepted_s) << "it found one place within";
+  EXPECT_FALSE(state_.claim.confirmed);
+}
+
 TEST_F(KnownStart, IsOfNoUseAnyMoreAfterAFlightThatWentTooFarUnseen) {
   const Tracker tracker(blocks_view_, settings_at(start_));
   Flight flight = flight_over(blocks_, start_, 1);

@@ -89,6 +89,33 @@ TEST(SharedRoad, LeavesOutWhatWasNotObservedInBoth) {
   EXPECT_NEAR(road_beside_straight_ones(map, features, 2, kLine, 1.0), 4.0, 1e-9);
 }
 
+TEST(SharedRoad, IsAsLongAsTheRoadIsThatRunsAcrossTheCells) {
+  CellArray map(80, 80, kNoRoad);
+  for (int row = 0; row < 80; ++row) {
+    for (int col = std::max(0, row - 2); col <= std::min(79, row + 2); ++col) map.at(col, row) = kRoad;
+  }
+  EXPECT_NEAR(road_beside_straight_ones(map, map, 0, kLine, 1.0), 80.0 * std::numbers::sqrt2, 3.0);
+}
+
+TEST(SharedRoad, LeavesOutRoadsLessThanHalfAsSureAsThoseThatTheAgreementRestsOn) {
+  CellArray map(40, 40, kNoRoad);
+  for (int col = 0; col < 40; ++col) {
+    map.at(col, 5) = map.at(col, 15) = kRoad;
+    map.at(col, 25) = cell_from_probability(0.8);
+    map.at(col, 35) = cell_from_probability(0.6);
+  }
+  EXPECT_NEAR(road_beside_straight_ones(map, map, 0, kLine, 1.0), 120.0, 1e-9);
+}
+
+TEST(SharedRoad, BesideAStraightRoadIsOneThatIsLessThanHalfAsLongHoweverNear) {
+  for (const auto& [length, left] : {std::pair(12, 12.0), {28, 0.0}}) {
+    CellArray map(40, 40, kNoRoad);
+    for (int col = 0; col < 40; ++col) map.at(col, 10) = kRoad;
+    for (int col = 0; col < length; ++col) map.at(col, 13) = kRoad;
+    EXPECT_NEAR(road_beside_straight_ones(map, map, 1, {.width = 1.0, .apart = 4.0}, 1.0), left, 1e-9) << length;
+  }
+}
+
 TEST(SharedRoad, IsNoLongerOfARoadThatIsSeenBesideItself) {
   CellArray map(40, 40, kNoRoad);
   CellArray features(40, 40, kNoRoad);

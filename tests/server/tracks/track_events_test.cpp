@@ -110,5 +110,19 @@ TEST_F(TrackRegistryTest, HandsOutStepsAndTheEndToAStream) {
   tracks->stop();
 }
 
+TEST_F(TrackRegistryTest, HandsOutNoStepsOfAnotherTrackThatEnds) {
+  const auto tracks = registry();
+  const std::string id = begin(*tracks);
+  const auto stream = tracks->stream(id, -1);
+  const auto other = tracks->stream(begin(*tracks), -1);
+  TrackSteps(*tracks).take(id, sent(step_of(0)), {});
+  tracks->finish(id);
+  EXPECT_EQ(stream->next()->steps.size(), 1U);
+  const auto news = other->next();
+  EXPECT_TRUE(news->steps.empty());
+  EXPECT_FALSE(news->ended);
+  tracks->stop();
+}
+
 }  // namespace
 }  // namespace roadfix::server

@@ -29,6 +29,7 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
   EXPECT_TRUE(again.repeated);
   EXPECT_EQ(again.text, first.text);
   EXPECT_EQ(again.answer, nlohmann::json::parse(first.text));
+  EXPECT_EQ(code_of([&] { TrackSteps(*tracks).take(id, sent(step_of(0), 1), {}); }), "step-differs");
   EXPECT_GE(tracks->times().age_of_step(id, 0), std::chrono::seconds(60));
   tracks->finish(id);
   EXPECT_FALSE(tracks->times().age_of_step(id, 0));

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+#include <thread>
+
 namespace roadfix::server {
 namespace {
 
@@ -37,6 +40,18 @@ TEST(TrackTimes, KnowsHowOldEachOfTheLastStepsIs) {
   EXPECT_TRUE(times.age_of_step("a", last));
   times.forget("a");
   EXPECT_FALSE(times.age_of_step("a", last));
+}
+
+TEST(TrackTimes, CountsTheSilenceOfATrackFromItsLastStepOrFromTheStartOfTheService) {
+  constexpr std::chrono::milliseconds kWait(20);
+  TrackTimes times;
+  times.begin("a");
+  std::this_thread::sleep_for(kWait);
+  EXPECT_GE(times.idle("a"), kWait);
+  EXPECT_GE(times.idle("of another run"), kWait);
+  const auto before = TrackTimes::Clock::now();
+  times.took_step("a", 0, before);
+  EXPECT_LE(times.idle("a"), TrackTimes::Clock::now() - before);
 }
 
 TEST(TrackTimes, BelievesTheDateOnlyOfATrackThatWasNotHeardYet) {

@@ -120,6 +120,7 @@ TEST_F(TrackRegistryTest, EndsTracksThatAreSilentForTooLong) {
   EXPECT_EQ(code_of([&] { take(*tracks, id, 0); }), "track-ended");
   EXPECT_EQ(code_of([&] { tracks->stream(id, -1); }), "track-ended");
   EXPECT_TRUE(tracks->of_client("::1").empty());
+  EXPECT_EQ(tracks->flying(), 0U);
 }
 
 TEST_F(TrackRegistryTest, ShowsWhatAnExpiredTrackFlewUntilItIsDeleted) {

@@ -350,6 +350,7 @@ TEST_F(TrackOfAStoppedCamera, FollowsItsOdometryThoughPicturesAreEncodedAnewToo)
            EXPECT_EQ(estimate.measurement, i == 0 ? Measurement::kUseless : Measurement::kRepeated) << "step " << i;
            EXPECT_EQ(estimate.converged(), i == 0) << "step " << i;
          });
+  EXPECT_FALSE(fly(tracker_, flight_, 1).converged()) << "it may not be where its odometry told";
   EXPECT_TRUE(fly(tracker_, flight_, 5).converged());
 }
 

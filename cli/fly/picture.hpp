@@ -1,5 +1,5 @@
 // Pictures of a flight as in figures 3 and 4 of the paper: the ground, particles, the true pose with the camera's
-// window, the estimate with its ellipse, and the acceptance region.
+// window, the estimate with its ellipse, and the circle that holds 95 %.
 #pragma once
 
 #include <opencv2/core.hpp>
@@ -36,7 +36,7 @@ struct Scene {
 };
 
 /// Particles are orange, the truth with its path and window is green, the estimate with its 95 % ellipse red, the
-/// circle that holds the vehicle with 95 % (the acceptance region) blue.
+/// circle that holds the vehicle with 95 % blue.
 cv::Mat drawn(const Backdrop& backdrop, const UtmZone& zone, const Scene& scene);
 
 }  // namespace roadfix::fly

@@ -2,8 +2,8 @@
 //
 // From the unexpanded node with the highest score a fan of edges is proposed; the far ends become nodes. What the paper
 // leaves open and we chose: scores start at 0 at the root, whose edges go all around; the cosine beyond 90 degrees is
-// 0; B + epsilon stands for B; a place is entered once (no node closer than half an edge to one that is not its
-// parent).
+// 0; B + epsilon stands for B; a place is entered once (each square of half an edge a side holds one node at most, so
+// that nodes of neighbouring squares may lie close together).
 #pragma once
 
 #include <cstdint>

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,9 +43,20 @@ void add_tree_options(CLI::App& command, TreeDetectorOptions& o) {
                      "Half the angle of the fan in degrees; default: 40")
       ->group(kGroup);
   add("--tree-root-fan", o.tree.root_fan, "Edges proposed from the root, all around; default: 16");
-  add("--tree-nodes", o.tree.max_nodes, "End of a tree: number of nodes; default: 200")->check(positive(kMaxNodes));
-  add("--tree-explored", o.tree.max_explored_share, "End of a tree: explored share of the picture");
-  add("--tree-area", o.tree.max_area_px, "End of a tree: its estimated area in pixels")->check(positive(kMaxAreaPx));
+  const auto* nodes = add("--tree-nodes", o.tree.max_nodes,
+                          "End of a tree: number of nodes; default: 200, or none where another end is given")
+                          ->check(positive(kMaxNodes));
+  // Trees of so many nodes would hardly ever come to another end.
+  const auto add_end = [&](const char* name, std::optional<double>& end, const char* what) {
+    const auto take = [&o, &end, nodes](double value) {
+      end = value;
+      if (nodes->empty()) o.tree.max_nodes.reset();
+    };
+    return command.add_option_function<double>(name, take, what)->group(kGroup);
+  };
+  add_end("--tree-explored", o.tree.max_explored_share, "End of a tree: explored share of the picture");
+  add_end("--tree-area", o.tree.max_area_px, "End of a tree: its estimated area in pixels")
+      ->check(positive(kMaxAreaPx));
   add("--tree-min-score", o.tree.min_score, "End of a branch: score of a new node");
 }
 

@@ -200,6 +200,17 @@ TEST_F(DetectCommand, TakesEveryParameterOfTheTree) {
   }
 }
 
+TEST_F(DetectCommand, EndsTreesAtTheirUsualNumberOfNodesOnlyWhereNoOtherEndIsGiven) {
+  const auto detector = [&](const char* ends) {
+    const auto answer = nlohmann::json::parse(detect(std::string("--gsd 0.5 --json ") + ends).out);
+    return answer["made_by"]["detector"].get<std::string>();
+  };
+  EXPECT_THAT(detector("--tree-min-score 0.01"), HasSubstr("max_nodes=200"));
+  EXPECT_THAT(detector("--tree-explored 0.1"), HasSubstr("max_nodes=- max_explored_share=0.1"));
+  EXPECT_THAT(detector("--tree-area 900"), HasSubstr("max_nodes=- max_explored_share=- max_area_px=900"));
+  EXPECT_THAT(detector("--tree-explored 0.1 --tree-nodes 50"), HasSubstr("max_nodes=50 max_explored_share=0.1"));
+}
+
 TEST_F(DetectCommand, NamesTheFileThatIsNoPicture) {
   std::ofstream(folder / "frame.png") << "II*, says a TIFF";
   const ProgramResult result = detect("--gsd 0.5");

@@ -21,6 +21,7 @@
 #include "cli/calibration_option.hpp"
 #include "cli/command.hpp"
 #include "cli/detector_options.hpp"
+#include "cli/given_options.hpp"
 #include "cli/number_checks.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
@@ -34,6 +35,7 @@ namespace roadfix::cli {
 namespace {
 
 struct BenchArguments {
+  nlohmann::json given;  ///< given_options()
   std::string manifest;
   std::string json_file;
   std::string cache;
@@ -94,9 +96,11 @@ nlohmann::json document(const BenchArguments& arguments, const Readers& readers,
                         const std::vector<std::string>& left_out) {
   nlohmann::json sets = nlohmann::json::array();
   for (const auto& result : results) sets.push_back(to_json(result));
-  return {{"roadfix", ROADFIX_VERSION},  {"manifest", arguments.manifest}, {"seed", arguments.options.seed},
-          {"cell_m", arguments.cell_m},  {"detector", readers.frames},     {"map_detector", readers.maps},
-          {"honesty", to_json(honesty)}, {"left_out", left_out},           {"results", sets}};
+  return {{"roadfix", ROADFIX_VERSION},     {"options", arguments.given},
+          {"manifest", arguments.manifest}, {"seed", arguments.options.seed},
+          {"cell_m", arguments.cell_m},     {"detector", readers.frames},
+          {"map_detector", readers.maps},   {"honesty", to_json(honesty)},
+          {"left_out", left_out},           {"results", sets}};
 }
 
 /// What the calibration was learned from, for those who read the file.
@@ -258,7 +262,10 @@ void add_bench_command(CLI::App& app) {
       ->add_option("--map-orientations", a->map_orientations,
                    fmt::format("As --orientations, for maps (default: {})", kMapOrientations))
       ->check(orientations());
-  command->callback([a] { run_bench(*a); });
+  command->callback([a, command] {
+    a->given = given_options(*command);
+    run_bench(*a);
+  });
 }
 
 }  // namespace roadfix::cli

@@ -14,6 +14,7 @@
 #include "cli/fly/flight_pictures.hpp"
 #include "cli/fly/service_localizer.hpp"
 #include "cli/fly_ground.hpp"
+#include "cli/given_options.hpp"
 #include "cli/output_file.hpp"
 #include "cli/terminal.hpp"
 #include "core/geodesy/geo_box.hpp"
@@ -33,8 +34,8 @@ json run_json(const fly::Run& run) {
           {"final_error_m", run.records.empty() ? json() : json(run.records.back().error_m)}};
 }
 
-json document(const FlyOptions& options, const Ground& ground, const std::vector<fly::FilterRuns>& results,
-              const fly::Events& events) {
+json document(const FlyOptions& options, const MapView& map, const Ground& ground,
+              const std::vector<fly::FilterRuns>& results, const fly::Events& events) {
   json filters = json::object();
   for (const auto& result : results) {
     json summary = to_json(fly::summary_of(result.runs, events));
@@ -43,7 +44,9 @@ json document(const FlyOptions& options, const Ground& ground, const std::vector
     filters[result.filter] = std::move(summary);
   }
   return {{"roadfix", ROADFIX_VERSION},
+          {"options", options.given},
           {"map", options.map},
+          {"map_version", map.id.version},
           {"ground", ground.what},
           {"seed", options.campaign.seed},
           {"particles", options.service.filter.particles},
@@ -147,7 +150,7 @@ void run_fly(const FlyOptions& options) {
              map.extent.width_m() / 1e3, map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
   if (!options.json_file.empty()) {
-    write_file(options.json_file, json_text(document(options, ground, results, events), 1) + '\n');
+    write_file(options.json_file, json_text(document(options, map, ground, results, events), 1) + '\n');
   }
   pictures.finish();
 }
@@ -177,7 +180,10 @@ void add_fly_command(CLI::App& app) {
       "          roadfix fly city.gpkg --server http://127.0.0.1:8080 --vehicles 16");
   const auto options = std::make_shared<FlyOptions>();
   add_fly_options(*command, *options);
-  command->callback([options] { run_fly(*options); });
+  command->callback([options, command] {
+    options->given = given_options(*command);
+    run_fly(*options);
+  });
 }
 
 }  // namespace roadfix::cli

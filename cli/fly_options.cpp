@@ -181,7 +181,7 @@ void add_output_options(CLI::App& command, FlyOptions& o) {
   const auto add = [&](const char* name, auto& value, const char* what) {
     return command.add_option(name, value, what)->group(kGroup);
   };
-  add("--json", o.json_file, "Figures of every filter")->type_name("FILE");
+  add("--json", o.json_file, "Figures of every filter, and the options that were given")->type_name("FILE");
   add("--csv", o.csv_file, "Truth, estimate and covariance of every step")->type_name("FILE");
   add("--geojson", o.geojson_file, "True paths, estimated paths, ellipses")->type_name("FILE");
   add("--pictures", o.pictures.folder, "Draw steps of the first flight into this folder")->type_name("DIR");

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,6 +19,7 @@ namespace roadfix::cli {
 inline constexpr int kMostSteps = 100'000;  // of a flight
 
 struct FlyOptions {
+  nlohmann::json given;  ///< given_options()
   std::string map;
   std::string over;
   Border border = Border::kSeen;  ///< of the frames of a recorded flight

@@ -148,6 +148,7 @@ json to_json(const SetResult& result) {
   for (const Outcome& outcome : result.outcomes) queries.push_back(outcome_json(outcome));
   return {{"method", to_string(result.method)},
           {"map", result.map},
+          {"set", result.set},
           {"query_set", result.query_set},
           {"n", s.n},
           {"answered", s.answered},

@@ -56,6 +56,7 @@ struct SetResult {
   double footprint_m = 0.0;                    ///< shorter side, 0 for real frames
   bool elsewhere = false;                      ///< no query shows ground of the map
   std::optional<FeatureQuality> quality = {};  ///< of simulated queries, where it is the same for all of them
+  std::size_t set = 1;                         ///< number of the query set in the manifest, from 1 on
 };
 
 /// With the honesty of the set (honesty.hpp).

@@ -133,8 +133,8 @@ std::vector<SetResult> run(const Manifest& manifest, const BenchOptions& options
         Drawing drawing{{}, imagery};
         if (!options.pictures.empty()) drawing.folder = options.pictures / fmt::format("{}-{}", i + 1, to_string(name));
         results.push_back({name, set.map, describe(set), ask(*methods[name], queries, map.zone, task, drawing, options),
-                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere,
-                           common_quality(set)});
+                           std::min(set.footprint.width_m, set.footprint.height_m), set.elsewhere, common_quality(set),
+                           i + 1});
       }
     }
   }

@@ -53,7 +53,9 @@ TEST(BenchCommand, WritesNothingButItsFiguresToStandardOutput) {
       run_program(folder.path(), "bench " + (folder / "town.json").string() + " --detector tree --map-cache " +
                                      (folder / "cache").string() + " --json /dev/stdout");
   ASSERT_EQ(bench.code, 0) << bench.err;
-  EXPECT_TRUE(nlohmann::json::accept(bench.out)) << bench.out;
+  const auto document = nlohmann::json::parse(bench.out);
+  EXPECT_EQ(document["options"]["--detector"], std::vector<std::string>{"tree"}) << "to repeat it by";
+  EXPECT_FALSE(document["options"].contains("--cell")) << "was not given";
 }
 
 TEST(BenchCommand, KeepsMapsInTheFolderForTemporaryFilesWhereNoHomeIsNamed) {

@@ -93,6 +93,9 @@ TEST_F(FlyCommand, FollowsAVehicleOverImageryAndWritesWhatHappened) {
   EXPECT_THAT(flown.out, HasSubstr("default"));
   const auto document = nlohmann::json::parse(text_of(file("out.json")));
   EXPECT_EQ(document["filters"]["paper"]["runs"], 1);
+  EXPECT_EQ(document["options"]["--filter"], (std::vector<std::string>{"paper", "default"})) << "to repeat it by";
+  EXPECT_EQ(document["options"]["--steps"], std::vector<std::string>{"6"});
+  EXPECT_FALSE(document["options"].contains("--seed")) << "was not given";
   EXPECT_EQ(document["filters"]["default"]["flights"][0]["steps"], 6);
   const std::string table = text_of(file("out.csv"));
   EXPECT_EQ(std::ranges::count(table, '\n'), 13);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <stop_token>
 
@@ -157,6 +158,7 @@ TEST_F(BenchRun, AsksTheOtherSetsWhereAFootprintFitsNowhere) {
   EXPECT_THAT(left_out, ::testing::ElementsAre(HasSubstr("2000 x 100 m")));
   ASSERT_EQ(results.size(), 1U);
   EXPECT_EQ(results[0].outcomes.size(), 3U);
+  EXPECT_EQ(to_json(results[0])["set"], 2) << "of the manifest";
 }
 
 TEST_F(BenchRun, AsksTheOtherSetsWhereTheFileOfOneIsMissing) {

@@ -1,5 +1,5 @@
-// Plain PNG by libdeflate: a header, pixels, and the end. The tiles of a map are written so, and pictures of them: a
-// tile is unpacked in an eighth of the time that zlib takes, and packed in a fifth.
+// Plain PNG by libdeflate: a header, pixels, and the end. The tiles of a map are written so, pictures of them, and
+// feature maps: a tile is unpacked in an eighth of the time that zlib takes, and packed in a fifth.
 #pragma once
 
 #include <cstddef>

@@ -181,7 +181,7 @@ TEST_F(FlyCommand, SaysWhichFramesOfARecordedFlightWereTakenBeyondTheMap) {
 TEST_F(FlyCommand, StopsInGoodOrderAtASignal) {
   const std::string flight = ROADFIX_PROGRAM " fly " + map() + " --over " + after() +
                              " --detector tree --tree-roots 500 --footprint-m 300 --runs 1000 --particles 500";
-  const std::string err = file("err");
+  const std::string err = file("signal-err");  // of no program before, whose progress would be taken for its own
   const std::string script = flight + " >" + file("out") + " 2>" + err + " & flight=$!; while kill -0 $flight && " +
                              "! grep -q flying " + err + "; do sleep 0.05; done; kill -TERM $flight; wait $flight";
   const int status = std::system(script.c_str());

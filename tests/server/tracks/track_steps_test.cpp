@@ -35,6 +35,18 @@ TEST_F(TrackStepsTest, SaysOfAStepThatWasTakenMeanwhileThatItIsARepeatedOne) {
   EXPECT_FALSE(tracks->times().age_of_step(id, 0));
 }
 
+TEST_F(TrackStepsTest, LetsNoStepWaitThatWasTakenAlready) {
+  TrackLimits limits;
+  limits.order_wait = std::chrono::seconds(10);
+  const auto tracks = registry(limits);
+  const std::string id = begin(*tracks);
+  take(*tracks, id, 0);
+  take(*tracks, id, 1);
+  const auto before = TrackTimes::Clock::now();
+  take(*tracks, id, 0);
+  EXPECT_LT(TrackTimes::Clock::now() - before, limits.order_wait);
+}
+
 TEST_F(TrackStepsTest, NamesTheMapTheProgramAndTheDetectorInWhatItKeeps) {
   const auto tracks = registry();
   const std::string id = begin(*tracks);

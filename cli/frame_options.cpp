@@ -114,11 +114,12 @@ std::vector<CLI::Option*> add_frame_options(CLI::App& command, FrameOptions& o) 
 
 void require_frame_for(const FrameOptions& options) {
   const bool tells_lens = options.camera.horizontal_fov || options.camera.focal_px;
-  if (tells_lens && !options.has_camera()) throw CLI::RequiredError("with --fov and --focal-px: --agl");
+  if (tells_lens && !options.has_camera())
+    throw CLI::RequiredError("with --fov or --focal-px: --agl (for a fix also --alt)");
   if (options.border == Border::kBlackUnseen && !options.given())
     throw CLI::RequiredError("with --black-unseen one of --gsd, --exif and --agl");
   if ((options.camera.roll || options.camera.pitch || options.camera.attitude_sigma) && !options.has_camera())
-    throw CLI::RequiredError("with --roll, --pitch and --attitude-sigma one of --exif and --agl");
+    throw CLI::RequiredError("with --roll, --pitch or --attitude-sigma: --exif or --agl (for a fix also --alt)");
 }
 
 api::SeenFrame ground_seen(const FrameOptions& options, const std::string& path, const RoadDetector& detector) {

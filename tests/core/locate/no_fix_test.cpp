@@ -8,6 +8,7 @@
 
 #include "core/grid/combine.hpp"
 #include "core/grid/resample.hpp"
+#include "core/locate/match_poses.hpp"
 #include "tests/core/locate/locate_fixture.hpp"
 #include "tests/support/code_of.hpp"
 #include "tests/support/random_pose.hpp"
@@ -254,6 +255,26 @@ TEST_F(NoFix, RefusesFramesThatFitTogetherWhereTheOneThatIsAskedForDoesNot) {
     EXPECT_LE(refused.probability, 0.5);
     EXPECT_EQ(refused.modes.at(0).weight, refused.probability);
   }
+}
+
+TEST_F(NoFix, RefusesFramesThatFitTogetherBesideThePlaceOfTheOneThatIsAskedFor) {
+  random_.seed(53);
+  const GridPose truth = pose_within(view_.extent, 400.0, random_);
+  const FeatureMap own = observed_at(map_, truth, 90, 90, 2.0, {0.2, 0.2}, random_);
+  const FeatureMap ahead = observed_at(map_, moved(truth, {120.0, 0.0, {}}), 110, 110, 2.0, {0.2, 0.2}, random_);
+  const auto answer = [&](double told_ahead_m, const std::optional<FeatureMap>& own_frame) {
+    const std::vector<PlacedFeatures> parts{{own, {}}, {ahead, {told_ahead_m, 0.0, {}}}};
+    return locate(view_, combined(parts, 1e6), {}, {.own_frame = own_frame});
+  };
+  EXPECT_EQ(answer(120.0, own).status, FixStatus::kFix);
+  const Fix misled = answer(102.0, {});
+  ASSERT_EQ(misled.status, FixStatus::kFix);
+  const FixMode& place = misled.modes.at(0);
+  ASSERT_GT(error_m(place.pose, truth), 8.0 * place.ellipse.sigma_m[0]);
+  ASSERT_GT(rho_at(view_, own, on_grid(place.pose, view_.zone)), 0.55 * place.rho) << "along a road, more than half";
+  const Fix refused = answer(102.0, own);
+  EXPECT_EQ(refused.status, FixStatus::kNoFix);
+  EXPECT_EQ(refused.reason, "frames-contradict");
 }
 
 TEST_F(NoFix, IsAnsweredWhereTheOthersContradictTheFrameThatIsAskedFor) {

@@ -46,26 +46,21 @@ bool contradicts(const MapView& map, const FeatureMap& own_frame, const GridPose
   return rho_at(map, own_frame, pose).value_or(0.0) < kLeastShare * rho_of_all;
 }
 
-bool lies_within(const FixMode& place, const GridPose& pose, const UtmZone& zone) {
-  const GridPose at = on_grid(place.pose, zone);
-  const Ellipse ellipse = on_grid(place.ellipse, zone, at.position);
-  const auto [along_m, across_m] = ellipse.sigma_m;
-  const auto told = position_covariance({along_m * along_m, across_m * across_m}, ellipse.heading);
-  return is_same_place(pose, at) &&
-         squared_mahalanobis(at.position, pose.position, told) <= kRegionSigmas * kRegionSigmas;
-}
-
 /// Offsets that are all wrong alike, as by a wrong speed, may leave a frame where it fits half as well as all: along a
 /// road, or with little else. By itself it is found beside the place then.
-bool is_found_beside(const MapView& map, const FeatureMap& own_frame, const FixMode& place, const FixOptions& options) {
+bool is_found_beside(const MapView& map, const FeatureMap& own_frame, const SearchMode& place, double nadir_sigma_m,
+                     const FixOptions& options) {
   constexpr double kAroundM = 60.0;  // less than a block, from which on streets repeat
-  const Prior around{.circle = GeoCircle{place.pose.position, kAroundM},
+  const GeoPose pose = on_earth(place.pose, map.zone);
+  const Prior around{.circle = GeoCircle{pose.position, kAroundM},
                      .box = {},
-                     .heading = HeadingRange{place.pose.heading, Angle::degrees(15.0)}};
+                     .heading = HeadingRange{pose.heading, Angle::degrees(15.0)}};
   const Fix found = locate(map, own_frame, around,
                            {.calibration = options.calibration,
                             .search = {.threads = options.search.threads, .deadline = options.search.deadline}});
-  return claims_a_place(found) && !lies_within(place, on_grid(found.modes.front().pose, map.zone), map.zone);
+  return claims_a_place(found) &&
+         !lies_within(place.pose, told_covariance(map, *options.calibration, nadir_sigma_m, place),
+                      on_grid(found.modes.front().pose, map.zone));
 }
 
 /// Refuses a likely place where the frame that is asked for, or a half of it, does not fit by itself.
@@ -73,10 +68,9 @@ void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const FixOpt
   const std::optional<FeatureMap>& own_frame = options.own_frame;
   const FeatureMap asked_for = own_frame ? in_cells_of(map, *own_frame) : cells;
   const FeatureMap frame = resampled(asked_for, asked_for.cell_m, best.scale);
-  const FixMode& place = fix.modes.front();
   const bool left_out = std::ranges::find(options.left_out, std::size_t{0}) != options.left_out.end();
-  if (left_out ||
-      (own_frame && (contradicts(map, frame, best.pose, place.rho) || is_found_beside(map, frame, place, options)))) {
+  if (left_out || (own_frame && (contradicts(map, frame, best.pose, fix.modes.front().rho) ||
+                                 is_found_beside(map, frame, best, cells.nadir_sigma_m, options)))) {
     refuse_place(
         fix, "frames-contradict",
         "the frames fit at one place together, but the one whose position is asked for does not fit there by "

@@ -5,19 +5,8 @@
 #include <functional>
 #include <vector>
 
-#include "core/locate/ellipse.hpp"
-
 namespace roadfix {
 namespace {
-
-/// Covariance of the position of a mode as a fix states it.
-PositionCovariance told_covariance(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
-                                   const SearchMode& mode) {
-  const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
-  const double nadir2 = std::pow(mode.scale * nadir_sigma_m, 2.0);
-  const PositionCovariance matched = position_covariance(map, mode.pose.position, mode.covariance);
-  return {scale2 * matched.east_east + nadir2, scale2 * matched.east_north, scale2 * matched.north_north + nadir2};
-}
 
 void count_nearby(SearchResult& found) {
   const SearchMode& nearby = *found.nearby;
@@ -35,18 +24,29 @@ bool is_same_place(const GridPose& a, const GridPose& b) {
   return distance_m(a.position, b.position) <= kNearM && angular_distance(a.heading, b.heading) <= near;
 }
 
+PositionCovariance told_covariance(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
+                                   const SearchMode& mode) {
+  const double scale2 = calibration.position_sigma_scale * calibration.position_sigma_scale;
+  const double nadir2 = std::pow(mode.scale * nadir_sigma_m, 2.0);
+  const PositionCovariance matched = position_covariance(map, mode.pose.position, mode.covariance);
+  return {scale2 * matched.east_east + nadir2, scale2 * matched.east_north, scale2 * matched.north_north + nadir2};
+}
+
+bool lies_within(const GridPose& answer, const PositionCovariance& covariance, const GridPose& pose) {
+  return is_same_place(answer, pose) &&
+         squared_mahalanobis(answer.position, pose.position, covariance) <= kRegionSigmas * kRegionSigmas;
+}
+
 void sort_out_other_places(const MapView& map, const Calibration& calibration, double nadir_sigma_m,
                            SearchResult& found) {
   if (found.modes.empty()) return;
   const SearchMode best = found.modes.front();
-  const auto lies_within = [&](const SearchMode& mode, const PositionCovariance& covariance) {
-    return is_same_place(mode.pose, best.pose) &&
-           squared_mahalanobis(best.pose.position, mode.pose.position, covariance) <= kRegionSigmas * kRegionSigmas;
-  };
   const PositionCovariance told = told_covariance(map, calibration, nadir_sigma_m, best);
-  if (found.nearby && !lies_within(*found.nearby, told)) count_nearby(found);
+  if (found.nearby && !lies_within(best.pose, told, found.nearby->pose)) count_nearby(found);
   const double peak_m2 = best.covariance[0][0] + best.covariance[1][1];
-  std::erase_if(found.outside, [&](const SearchMode& mode) { return lies_within(mode, {peak_m2, 0.0, peak_m2}); });
+  std::erase_if(found.outside, [&](const SearchMode& mode) {
+    return lies_within(best.pose, {peak_m2, 0.0, peak_m2}, mode.pose);
+  });
 }
 
 }  // namespace roadfix

@@ -15,7 +15,6 @@ using testing::encoded_anew;
 using testing::noisy;
 using testing::of_bytes;
 using testing::random_sketch;
-using testing::with_parts_changed;
 
 FeatureMap street_at(int col) {
   CellArray cells(20, 20, kNoRoad);

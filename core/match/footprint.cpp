@@ -96,6 +96,16 @@ void PackedFootprint::mask_and_count(Block& values, Block& mask) {
   sum_of_squares_ += squares;
 }
 
+std::vector<std::ptrdiff_t> PackedFootprint::block_offsets(std::ptrdiff_t stride) const {
+  std::vector<std::ptrdiff_t> offsets;
+  offsets.reserve(values_.size());
+  for (const Span& span : spans_) {
+    for (int i = 0; i < span.cells; i += kAlignment) offsets.push_back(span.row * stride + span.first_col + i);
+  }
+  if (offsets.size() < values_.size()) offsets.push_back(offsets.empty() ? 0 : offsets.back());
+  return offsets;
+}
+
 int footprint_reach(const FeatureMap& features) {
   double reach = 0.0;
   for (const double col : {0.0, static_cast<double>(features.cells.cols())}) {

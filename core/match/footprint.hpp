@@ -35,6 +35,8 @@ class PackedFootprint {
   const std::uint8_t* values() const { return values_.data()->cells; }
   /// 255 where observed, else 0.
   const std::uint8_t* mask() const { return mask_.data()->cells; }
+  /// Where in a plane of that stride the cells below each block of values() lie, as seen from that below the nadir.
+  std::vector<std::ptrdiff_t> block_offsets(std::ptrdiff_t stride) const;
   /// Largest distance of an observed cell from the nadir cell along either axis: how far from the rim of a MapPlane the
   /// nadir has to stay.
   int reach() const { return reach_; }

@@ -1,5 +1,9 @@
 #include "core/match/kernel_highway.hpp"
 
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
 // clang-format off: foreach_target compiles this file once per instruction set, and must come before highway.h
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/match/kernel_highway.cpp"
@@ -11,35 +15,39 @@ HWY_BEFORE_NAMESPACE();
 namespace roadfix {
 namespace HWY_NAMESPACE {
 
+constexpr std::size_t kBlock = PackedFootprint::kAlignment;
+
 #if HWY_TARGET == HWY_SCALAR  // processors without the byte operations (SSE2 only)
 
-void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
-                     IntegerSums& sums) {
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
-      const std::int64_t m = map[i];
-      const std::int64_t l = footprint.values()[span.offset + i];
-      if (m == kUnobserved || footprint.mask()[span.offset + i] == 0) continue;
-      ++sums.n;
-      sums.m += m;
-      sums.l += l;
-      sums.mm += m * m;
-      sums.ll += l * l;
-      sums.ml += m * l;
+template <std::size_t kPlaces>
+void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
+            const PlaneCell* cells, IntegerSums* out) {
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    out[k] = {};
+    for (std::size_t i = 0; i < blocks.size() * kBlock; ++i) {
+      const std::int64_t m = map.at(cells[k].col, cells[k].row)[blocks[i / kBlock] + static_cast<int>(i % kBlock)];
+      const std::int64_t l = footprint.values()[i];
+      if (m == kUnobserved || footprint.mask()[i] == 0) continue;
+      ++out[k].n;
+      out[k].m += m;
+      out[k].l += l;
+      out[k].mm += m * m;
+      out[k].ll += l * l;
+      out[k].ml += m * l;
     }
   }
 }
 
-std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint) {
-  std::int64_t sum = 0;
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(span.cells); ++i) {
-      sum += std::int64_t{1} * map[i] * footprint.values()[span.offset + i];
+template <std::size_t kPlaces>
+void add_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
+                  const PlaneCell* cells, std::int64_t* out) {
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    out[k] = 0;
+    for (std::size_t i = 0; i < blocks.size() * kBlock; ++i) {
+      const std::int64_t m = map.at(cells[k].col, cells[k].row)[blocks[i / kBlock] + static_cast<int>(i % kBlock)];
+      out[k] += m * footprint.values()[i];
     }
   }
-  return sum;
 }
 
 #else
@@ -55,165 +63,158 @@ using Bytes = hn::Vec<decltype(kBytes)>;
 using Ints = hn::Vec<decltype(kInts)>;
 using Longs = hn::Vec<decltype(kLongs)>;
 
-// A vector of bytes adds at most 4 * 254^2 to a 32-bit lane: after so many vectors the lanes are emptied.
-constexpr std::size_t kVectorsPerFlush = 8192;
-static_assert(kVectorsPerFlush * 4 * 254 * 254 < (std::size_t{1} << 31));
-static_assert(PackedFootprint::kMaxCols / 16 <= kVectorsPerFlush, "a row fits between two flushes");
+// A block adds at most 8 * 254^2 to a 32-bit lane: after so many the lanes are emptied.
+constexpr std::size_t kBlocksPerFlush = 4096;
+static_assert(kBlocksPerFlush * 8 * 254 * 254 < (std::size_t{1} << 31));
 
-HWY_ATTR HWY_INLINE void add_products(Bytes a, Bytes b, Ints& sum0, Ints& sum1) {
-  const Bytes zero = hn::Zero(kBytes);
-  const auto low_a = hn::BitCast(kShorts, hn::InterleaveLower(kBytes, a, zero));
-  const auto low_b = hn::BitCast(kShorts, hn::InterleaveLower(kBytes, b, zero));
-  const auto high_a = hn::BitCast(kShorts, hn::InterleaveUpper(kBytes, a, zero));
-  const auto high_b = hn::BitCast(kShorts, hn::InterleaveUpper(kBytes, b, zero));
-  sum0 = hn::ReorderWidenMulAccumulate(kInts, low_a, low_b, sum0, sum1);
-  sum0 = hn::ReorderWidenMulAccumulate(kInts, high_a, high_b, sum0, sum1);
-}
+/// Bytes as shorts, in the order that is the same for all.
+struct Shorts {
+  hn::Vec<decltype(kShorts)> low, high;
 
-HWY_ATTR HWY_INLINE std::int64_t emptied(Ints& sum0, Ints& sum1) {
-  // Pairs of lanes are widened before they are added: two lanes together may exceed 32 bits.
-  const auto widened = [](Ints v) HWY_ATTR {
-    const auto lanes = hn::BitCast(kLongs, v);
-    return hn::Add(hn::ShiftRight<32>(lanes), hn::And(lanes, hn::Set(kLongs, 0xFFFFFFFFu)));
-  };
-  const Longs sum = hn::Add(widened(sum0), widened(sum1));
-  sum0 = sum1 = hn::Zero(kInts);
-  return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(kLongs, sum)));
-}
+  HWY_ATTR HWY_INLINE explicit Shorts(Bytes bytes)
+      : low(hn::BitCast(kShorts, hn::InterleaveLower(kBytes, bytes, hn::Zero(kBytes)))),
+        high(hn::BitCast(kShorts, hn::InterleaveUpper(kBytes, bytes, hn::Zero(kBytes)))) {}
+};
+
+/// Of products, in lanes of 32 bits.
+struct ProductSum {
+  Ints even, odd;
+
+  HWY_ATTR HWY_INLINE ProductSum() : even(hn::Zero(kInts)), odd(even) {}
+  HWY_ATTR HWY_INLINE void add(const Shorts& a, const Shorts& b) {
+    even = hn::ReorderWidenMulAccumulate(kInts, a.low, b.low, even, odd);
+    even = hn::ReorderWidenMulAccumulate(kInts, a.high, b.high, even, odd);
+  }
+
+  HWY_ATTR HWY_INLINE std::int64_t emptied() {
+    // Pairs of lanes are widened before they are added: two lanes together may exceed 32 bits.
+    const auto widened = [](Ints v) HWY_ATTR {
+      const auto lanes = hn::BitCast(kLongs, v);
+      return hn::Add(hn::ShiftRight<32>(lanes), hn::And(lanes, hn::Set(kLongs, 0xFFFFFFFFu)));
+    };
+    const Longs sum = hn::Add(widened(even), widened(odd));
+    even = odd = hn::Zero(kInts);
+    return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(kLongs, sum)));
+  }
+};
 
 HWY_ATTR HWY_INLINE std::int64_t total(Longs sum) {
   return static_cast<std::int64_t>(hn::GetLane(hn::SumOfLanes(kLongs, sum)));
 }
 
-/// Where all map cells under the footprint were observed: only three sums depend on the place. False if one was not.
-HWY_ATTR bool sums_on_observed_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
-                                   IntegerSums& sums) {
+/// What lies below a place where the map has not observed: taken out of what the footprint's sums begin with.
+struct Hidden {
+  Longs n, l;
+  ProductSum ll;
+
+  HWY_ATTR HWY_INLINE Hidden() : n(hn::Zero(kLongs)), l(n) {}
+  HWY_ATTR void add(Bytes where, Bytes values) {
+    const Bytes hidden = hn::And(where, values);
+    n = hn::Add(n, hn::SumsOf8(hn::And(where, hn::Set(kBytes, 1))));
+    l = hn::Add(l, hn::SumsOf8(hidden));
+    ll.add(Shorts(hidden), Shorts(hidden));
+  }
+};
+
+/// Several places at once share the footprint's values, and the processor need not wait for a sum of one before it adds
+/// to that of another.
+template <std::size_t kPlaces>
+HWY_ATTR void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
+                     const PlaneCell* cells, IntegerSums* out) {
   const Bytes unobserved = hn::Set(kBytes, kUnobserved);
   const std::size_t step = hn::Lanes(kBytes);
-  Longs m_sum = hn::Zero(kLongs);
-  Ints mm0 = hn::Zero(kInts);
-  Ints mm1 = hn::Zero(kInts);
-  Ints ml0 = hn::Zero(kInts);
-  Ints ml1 = hn::Zero(kInts);
-  std::size_t vectors = 0;
-  sums = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
-    const std::uint8_t* values = footprint.values() + span.offset;
-    const std::uint8_t* mask = footprint.mask() + span.offset;
-    const auto cells = static_cast<std::size_t>(span.cells);
-    auto holes = hn::Zero(kBytes);
-    if (vectors + cells / step + 1 > kVectorsPerFlush) {
-      sums.mm += emptied(mm0, mm1);
-      sums.ml += emptied(ml0, ml1);
-      vectors = 0;
-    }
-    for (std::size_t i = 0; i < cells; i += step, ++vectors) {
-      const Bytes m = hn::And(hn::LoadU(kBytes, map + i), hn::Load(kBytes, mask + i));
-      holes = hn::Max(holes, m);
-      m_sum = hn::Add(m_sum, hn::SumsOf8(m));
-      add_products(m, m, mm0, mm1);
-      add_products(m, hn::Load(kBytes, values + i), ml0, ml1);
-    }
-    if (!hn::AllFalse(kBytes, hn::Eq(holes, unobserved))) return false;
+  const std::uint8_t* nadir[kPlaces];
+  Longs m_sum[kPlaces];
+  ProductSum mm[kPlaces];
+  ProductSum ml[kPlaces];
+  Hidden hidden[kPlaces];
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    nadir[k] = map.at(cells[k].col, cells[k].row);
+    m_sum[k] = hn::Zero(kLongs);
+    out[k] = {footprint.observed_cells(), 0, footprint.sum(), 0, footprint.sum_of_squares(), 0};
   }
-  sums.m = total(m_sum);
-  sums.mm += emptied(mm0, mm1);
-  sums.ml += emptied(ml0, ml1);
-  return true;
-}
-
-HWY_ATTR void sums_on_partial_map(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
-                                  IntegerSums& sums) {
-  const Bytes unobserved = hn::Set(kBytes, kUnobserved);
-  const Bytes one = hn::Set(kBytes, 1);
-  const std::size_t step = hn::Lanes(kBytes);
-  Longs n_sum = hn::Zero(kLongs);
-  Longs m_sum = hn::Zero(kLongs);
-  Longs l_sum = hn::Zero(kLongs);
-  Ints mm0 = hn::Zero(kInts);
-  Ints mm1 = hn::Zero(kInts);
-  Ints ll0 = hn::Zero(kInts);
-  Ints ll1 = hn::Zero(kInts);
-  Ints ml0 = hn::Zero(kInts);
-  Ints ml1 = hn::Zero(kInts);
-  std::size_t vectors = 0;
-  sums = {};
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
-    const std::uint8_t* values = footprint.values() + span.offset;
-    const std::uint8_t* mask = footprint.mask() + span.offset;
-    const auto cells = static_cast<std::size_t>(span.cells);
-    if (vectors + cells / step + 1 > kVectorsPerFlush) {
-      sums.mm += emptied(mm0, mm1);
-      sums.ll += emptied(ll0, ll1);
-      sums.ml += emptied(ml0, ml1);
-      vectors = 0;
+  for (std::size_t first = 0; first < blocks.size(); first += kBlocksPerFlush) {
+    const std::size_t last = std::min(blocks.size(), first + kBlocksPerFlush);
+    for (std::size_t block = first; block < last; ++block) {
+      for (std::size_t i = 0; i < kBlock; i += step) {
+        const Bytes mask = hn::Load(kBytes, footprint.mask() + block * kBlock + i);
+        const Bytes values = hn::Load(kBytes, footprint.values() + block * kBlock + i);
+        const Shorts l(values);
+        Bytes m[kPlaces];
+        Bytes highest = hn::Zero(kBytes);
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+          m[k] = hn::And(hn::LoadU(kBytes, nadir[k] + blocks[block] + i), mask);
+          highest = hn::Max(highest, m[k]);
+        }
+        if (!hn::AllFalse(kBytes, hn::Eq(highest, unobserved))) [[unlikely]] {
+          for (std::size_t k = 0; k < kPlaces; ++k) {
+            const Bytes unseen = hn::VecFromMask(kBytes, hn::Eq(m[k], unobserved));
+            hidden[k].add(unseen, values);
+            m[k] = hn::AndNot(unseen, m[k]);
+          }
+        }
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+          const Shorts below(m[k]);
+          m_sum[k] = hn::Add(m_sum[k], hn::SumsOf8(m[k]));
+          mm[k].add(below, below);
+          ml[k].add(below, l);
+        }
+      }
     }
-    for (std::size_t i = 0; i < cells; i += step, ++vectors) {
-      const Bytes raw = hn::LoadU(kBytes, map + i);
-      const Bytes hidden = hn::VecFromMask(kBytes, hn::Eq(raw, unobserved));
-      const Bytes both = hn::AndNot(hidden, hn::Load(kBytes, mask + i));
-      const Bytes m = hn::And(raw, both);
-      const Bytes l = hn::And(hn::Load(kBytes, values + i), both);
-      n_sum = hn::Add(n_sum, hn::SumsOf8(hn::And(both, one)));
-      m_sum = hn::Add(m_sum, hn::SumsOf8(m));
-      l_sum = hn::Add(l_sum, hn::SumsOf8(l));
-      add_products(m, m, mm0, mm1);
-      add_products(l, l, ll0, ll1);
-      add_products(m, l, ml0, ml1);
+    for (std::size_t k = 0; k < kPlaces; ++k) {
+      out[k].mm += mm[k].emptied();
+      out[k].ml += ml[k].emptied();
+      out[k].ll -= hidden[k].ll.emptied();
     }
   }
-  sums.n = total(n_sum);
-  sums.m = total(m_sum);
-  sums.l = total(l_sum);
-  sums.mm += emptied(mm0, mm1);
-  sums.ll += emptied(ll0, ll1);
-  sums.ml += emptied(ml0, ml1);
-}
-
-void sums_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride, const PackedFootprint& footprint,
-                     IntegerSums& sums) {
-  if (!sums_on_observed_map(nadir, stride, footprint, sums)) sums_on_partial_map(nadir, stride, footprint, sums);
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    out[k].n -= total(hidden[k].n);
+    out[k].m = total(m_sum[k]);
+    out[k].l -= total(hidden[k].l);
+  }
 }
 
 /// Unobserved cells of the footprint have the value 0.
-HWY_ATTR std::int64_t products_over_cells(const std::uint8_t* nadir, std::ptrdiff_t stride,
-                                          const PackedFootprint& footprint) {
+template <std::size_t kPlaces>
+HWY_ATTR void add_products(const MapPlane& map, const PackedFootprint& footprint,
+                           std::span<const std::ptrdiff_t> blocks, const PlaneCell* cells, std::int64_t* out) {
   const std::size_t step = hn::Lanes(kBytes);
-  Ints sum0 = hn::Zero(kInts);
-  Ints sum1 = hn::Zero(kInts);
-  std::int64_t sum = 0;
-  std::size_t vectors = 0;
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    const std::uint8_t* map = nadir + span.row * stride + span.first_col;
-    const std::uint8_t* values = footprint.values() + span.offset;
-    const auto cells = static_cast<std::size_t>(span.cells);
-    if (vectors + cells / step + 1 > kVectorsPerFlush) {
-      sum += emptied(sum0, sum1);
-      vectors = 0;
-    }
-    for (std::size_t i = 0; i < cells; i += step, ++vectors) {
-      add_products(hn::LoadU(kBytes, map + i), hn::Load(kBytes, values + i), sum0, sum1);
-    }
+  const std::uint8_t* nadir[kPlaces];
+  ProductSum ml[kPlaces];
+  for (std::size_t k = 0; k < kPlaces; ++k) {
+    nadir[k] = map.at(cells[k].col, cells[k].row);
+    out[k] = 0;
   }
-  return sum + emptied(sum0, sum1);
+  for (std::size_t first = 0; first < blocks.size(); first += kBlocksPerFlush) {
+    const std::size_t last = std::min(blocks.size(), first + kBlocksPerFlush);
+    for (std::size_t block = first; block < last; ++block) {
+      for (std::size_t i = 0; i < kBlock; i += step) {
+        const Shorts l(hn::Load(kBytes, footprint.values() + block * kBlock + i));
+        for (std::size_t k = 0; k < kPlaces; ++k) {
+          ml[k].add(Shorts(hn::LoadU(kBytes, nadir[k] + blocks[block] + i)), l);
+        }
+      }
+    }
+    for (std::size_t k = 0; k < kPlaces; ++k) out[k] += ml[k].emptied();
+  }
 }
 
 #endif
 
 void products_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                  std::span<std::int64_t> sums) {
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    sums[i] = products_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint);
-  }
+  const std::vector<std::ptrdiff_t> blocks = footprint.block_offsets(map.stride());
+  std::size_t i = 0;
+  for (; i + 4 <= places.size(); i += 4) add_products<4>(map, footprint, blocks, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_products<1>(map, footprint, blocks, &places[i], &sums[i]);
 }
 
 void sums_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
              std::span<IntegerSums> sums) {
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    sums_over_cells(map.at(places[i].col, places[i].row), map.stride(), footprint, sums[i]);
-  }
+  const std::vector<std::ptrdiff_t> blocks = footprint.block_offsets(map.stride());
+  std::size_t i = 0;
+  for (; i + 2 <= places.size(); i += 2) add_up<2>(map, footprint, blocks, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_up<1>(map, footprint, blocks, &places[i], &sums[i]);
 }
 
 const char* target_name() { return hwy::TargetName(HWY_TARGET); }

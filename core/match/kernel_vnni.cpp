@@ -28,30 +28,10 @@ static_assert(2 * kHalf == int{kStep});
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 128 < (std::size_t{1} << 31));
 
-/// Where the map's cells below the two halves of a vector of the footprint's values lie, as seen from that below the
-/// nadir. Turned footprints have many short rows: two of them fit a vector.
-struct Offsets {
-  std::ptrdiff_t low = 0;
-  std::ptrdiff_t high = 0;
-};
-
-std::vector<Offsets> offsets_of(const PackedFootprint& footprint, std::ptrdiff_t stride) {
-  std::vector<Offsets> offsets;
-  offsets.reserve(2 * footprint.spans().size());
-  bool low = true;
-  for (const PackedFootprint::Span& span : footprint.spans()) {
-    for (int i = 0; i < span.cells; i += kHalf, low = !low) {
-      const std::ptrdiff_t offset = span.row * stride + span.first_col + i;
-      if (low) offsets.push_back({offset, 0});
-      offsets.back().high = offset;
-    }
-  }
-  return offsets;
-}
-
-ROADFIX_VNNI inline __m512i cells_below(const std::uint8_t* nadir, Offsets offsets) {
-  const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + offsets.low));
-  const __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + offsets.high));
+/// The map's cells below two blocks of the footprint. Turned footprints have many short rows: two of them fit a vector.
+ROADFIX_VNNI inline __m512i cells_below(const std::uint8_t* nadir, const std::ptrdiff_t* blocks) {
+  const __m256i low = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + blocks[0]));
+  const __m256i high = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(nadir + blocks[1]));
   return _mm512_inserti64x4(_mm512_castsi256_si512(low), high, 1);
 }
 
@@ -84,10 +64,11 @@ struct Hidden {
 /// Several places at once: the processor need not wait for a sum of one before it adds to the others. The instruction
 /// wants signed bytes for one factor: cells of the map less 128, 0 where the footprint has not observed.
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const Offsets> offsets,
+ROADFIX_VNNI void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
                          const PlaneCell* cells, IntegerSums* out) {
   const __m512i high_bit = _mm512_set1_epi8(-128);
   const __m512i unobserved = _mm512_set1_epi8(kUnobserved - 128);
+  const std::size_t vectors = blocks.size() / 2;
   const std::uint8_t* nadir[kPlaces];
   __m512i m[kPlaces];
   __m512i mm[kPlaces];
@@ -98,13 +79,13 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const PackedFootprint& footprint, 
     m[k] = mm[k] = ml[k] = _mm512_setzero_si512();
     out[k] = {};
   }
-  for (std::size_t first = 0; first < offsets.size(); first += kVectorsPerFlush) {
-    const std::size_t last = std::min(offsets.size(), first + kVectorsPerFlush);
+  for (std::size_t first = 0; first < vectors; first += kVectorsPerFlush) {
+    const std::size_t last = std::min(vectors, first + kVectorsPerFlush);
     for (std::size_t i = first; i < last; ++i) {
       const __m512i l = _mm512_loadu_si512(footprint.values() + i * kStep);
       const __m512i mask = _mm512_loadu_si512(footprint.mask() + i * kStep);
       for (std::size_t k = 0; k < kPlaces; ++k) {
-        const __m512i below = cells_below(nadir[k], offsets[i]);
+        const __m512i below = cells_below(nadir[k], &blocks[2 * i]);
         __m512i less_128 = _mm512_and_si512(_mm512_xor_si512(below, high_bit), mask);
         const __mmask64 unseen = _mm512_cmpeq_epi8_mask(less_128, unobserved);
         if (unseen != 0) [[unlikely]] {
@@ -135,9 +116,10 @@ ROADFIX_VNNI void add_up(const MapPlane& map, const PackedFootprint& footprint, 
 }
 
 template <std::size_t kPlaces>
-ROADFIX_VNNI void add_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const Offsets> offsets,
-                               const PlaneCell* cells, std::int64_t* out) {
+ROADFIX_VNNI void add_products(const MapPlane& map, const PackedFootprint& footprint,
+                               std::span<const std::ptrdiff_t> blocks, const PlaneCell* cells, std::int64_t* out) {
   const __m512i high_bit = _mm512_set1_epi8(-128);
+  const std::size_t vectors = blocks.size() / 2;
   const std::uint8_t* nadir[kPlaces];
   __m512i ml[kPlaces];
   for (std::size_t k = 0; k < kPlaces; ++k) {
@@ -145,12 +127,12 @@ ROADFIX_VNNI void add_products(const MapPlane& map, const PackedFootprint& footp
     ml[k] = _mm512_setzero_si512();
     out[k] = 128 * footprint.sum();
   }
-  for (std::size_t first = 0; first < offsets.size(); first += kVectorsPerFlush) {
-    const std::size_t last = std::min(offsets.size(), first + kVectorsPerFlush);
+  for (std::size_t first = 0; first < vectors; first += kVectorsPerFlush) {
+    const std::size_t last = std::min(vectors, first + kVectorsPerFlush);
     for (std::size_t i = first; i < last; ++i) {
       const __m512i l = _mm512_loadu_si512(footprint.values() + i * kStep);
       for (std::size_t k = 0; k < kPlaces; ++k) {
-        const __m512i less_128 = _mm512_xor_si512(cells_below(nadir[k], offsets[i]), high_bit);
+        const __m512i less_128 = _mm512_xor_si512(cells_below(nadir[k], &blocks[2 * i]), high_bit);
         ml[k] = _mm512_dpbusd_epi32(ml[k], l, less_128);
       }
     }
@@ -172,19 +154,19 @@ void allow_byte_products_for_test(bool allow) { allowed = allow; }
 void sums_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                            std::span<IntegerSums> sums) {
   assert(places.size() == sums.size());
-  const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
+  const std::vector<std::ptrdiff_t> blocks = footprint.block_offsets(map.stride());
   std::size_t i = 0;
-  for (; i + 4 <= places.size(); i += 4) add_up<4>(map, footprint, offsets, &places[i], &sums[i]);
-  for (; i < places.size(); ++i) add_up<1>(map, footprint, offsets, &places[i], &sums[i]);
+  for (; i + 4 <= places.size(); i += 4) add_up<4>(map, footprint, blocks, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_up<1>(map, footprint, blocks, &places[i], &sums[i]);
 }
 
 void products_by_byte_products(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
                                std::span<std::int64_t> sums) {
   assert(places.size() == sums.size());
-  const std::vector<Offsets> offsets = offsets_of(footprint, map.stride());
+  const std::vector<std::ptrdiff_t> blocks = footprint.block_offsets(map.stride());
   std::size_t i = 0;
-  for (; i + 8 <= places.size(); i += 8) add_products<8>(map, footprint, offsets, &places[i], &sums[i]);
-  for (; i < places.size(); ++i) add_products<1>(map, footprint, offsets, &places[i], &sums[i]);
+  for (; i + 8 <= places.size(); i += 8) add_products<8>(map, footprint, blocks, &places[i], &sums[i]);
+  for (; i < places.size(); ++i) add_products<1>(map, footprint, blocks, &places[i], &sums[i]);
 }
 
 }  // namespace roadfix

@@ -7,6 +7,7 @@ import { bytesOf, upload } from './upload.js';
 function showSent(output, sent, size) {
   if (sent < size) showStatus(output, 'sending …', [`${Math.round(sent / 1000)} of ${Math.round(size / 1000)} kB are sent`]);
   else showStatus(output, 'searching …', []);
+  if (sent > 0 && sent < size) output.ariaBusy = 'true';  // or screen readers read each of these amounts aloud
 }
 
 export class Answer {

@@ -78,6 +78,7 @@ function modeText(mode) {
 /// `look` is a class of console.css, `word` what is read.
 export function showStatus(output, look, lines, word = look) {
   output.classList.remove('old');
+  output.ariaBusy = null;
   output.replaceChildren(element('span', word.replaceAll('_', ' '), `status ${look}`));
   for (const line of lines.filter(Boolean)) output.append(element('div', line));
 }

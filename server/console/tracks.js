@@ -18,7 +18,9 @@ const get = (url, patienceMs = PATIENCE_MS) => request(url, { signal: AbortSigna
 const urlOf = (id) => `/v1/tracks/${encodeURIComponent(id)}`;
 
 function textOf({ id, map, created_us, stale }) {
-  const since = new Date(created_us / 1000).toLocaleTimeString([], { hour: '2-digit', minute: '2-digit' });
+  const began = new Date(created_us / 1000);
+  const day = began.toDateString() === new Date(Date.now()).toDateString() ? {} : { day: 'numeric', month: 'short' };
+  const since = began.toLocaleString([], { ...day, hour: '2-digit', minute: '2-digit' });
   return `${map.name}, ${id.slice(0, 8)}, since ${since}${stale ? ', silent' : ''}`;
 }
 

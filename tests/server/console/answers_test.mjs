@@ -75,10 +75,13 @@ await run({
     const asked = answer.ask('/fix', large);
     await new Promise(setImmediate);
     assert.match(output.textContent, /^sending …\n0 of 8400 kB/);
+    assert.equal(output.ariaBusy, null);
     uploads.last.upload.onprogress({ loaded: 2_100_000 });
     assert.match(output.textContent, /2100 of 8400 kB/);
+    assert.equal(output.ariaBusy, 'true', 'no screen reader reads on and on');
     uploads.last.upload.onload();
     assert.match(output.textContent, /^searching/);
+    assert.equal(output.ariaBusy, null);
     give(fix);
     await asked;
     assert.match(output.textContent, /^fix/);

@@ -279,6 +279,20 @@ await run({
     await tracks.look();
     assert.match(output.textContent, /gives no answer/);
   },
+  async 'a track that began on another day says on which'() {
+    const at = (time) => ({ ...track('one'), created_us: new Date(time).getTime() * 1000 });
+    const told = async (time) => {
+      service.answers = { '/v1/tracks': { tracks: [at(time)] } };
+      await tracks.refresh();
+      return list.options[0].text;
+    };
+    const before = now;
+    now = new Date('2026-03-07T18:00').getTime();
+    const month = new Date(now).toLocaleDateString([], { month: 'short' });
+    assert.ok(!(await told('2026-03-07T09:00')).includes(month));
+    assert.ok((await told('2026-03-06T23:00')).includes(month));
+    now = before;
+  },
   async 'a service that does not answer takes no track off the list'() {
     const ids = () => list.options.map(({ value }) => value);
     service.answers = { '/v1/tracks': { tracks: [track('one'), track('two', converged, 80)] } };

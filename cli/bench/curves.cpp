@@ -7,6 +7,9 @@
 namespace roadfix::bench {
 namespace {
 
+using evaluation::clopper_pearson;
+using evaluation::Interval;
+
 constexpr double kSide = 320.0;
 constexpr double kMargin = 56.0;
 constexpr const char* kBlue = "#1f6fb2";

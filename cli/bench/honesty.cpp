@@ -11,6 +11,9 @@
 namespace roadfix::bench {
 namespace {
 
+using evaluation::chi_square_mean_band;
+using evaluation::clopper_pearson;
+using evaluation::Interval;
 using nlohmann::json;
 
 constexpr std::array<double, 9> kBinEdges{0.02, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 0.99, 0.995};
@@ -54,15 +57,13 @@ void count(double nees, double chi_square_95, Consistency& consistency) {
   consistency.within_95 += nees <= chi_square_95 ? 1 : 0;
 }
 
-json interval_json(const Interval& interval) { return {interval.low, interval.high}; }
-
 json consistency_json(const Consistency& consistency) {
   json result = {{"n", consistency.n}};
   if (consistency.n == 0) return result;
   result["mean"] = consistency.mean_nees;
-  result["band_95"] = interval_json(chi_square_mean_band(consistency.n, consistency.dimensions));
+  result["band_95"] = evaluation::to_json(chi_square_mean_band(consistency.n, consistency.dimensions));
   result["within_95"] = consistency.within_95;
-  result["within_95_share_95"] = interval_json(clopper_pearson(consistency.within_95, consistency.n));
+  result["within_95_share_95"] = evaluation::to_json(clopper_pearson(consistency.within_95, consistency.n));
   return result;
 }
 
@@ -98,7 +99,7 @@ json to_json(const Honesty& honesty) {
     bins.push_back({{"n", bin.n},
                     {"mean_probability", bin.mean_probability},
                     {"right", bin.right},
-                    {"right_share_95", interval_json(clopper_pearson(bin.right, bin.n))}});
+                    {"right_share_95", evaluation::to_json(clopper_pearson(bin.right, bin.n))}});
   }
   json at = json::array();
   for (const AtConfidence& a : honesty.at) {
@@ -106,7 +107,7 @@ json to_json(const Honesty& honesty) {
                   {"answered", a.answered},
                   {"outside_ellipse", a.outside},
                   {"false_fixes", a.false_fixes},
-                  {"false_fix_rate_95", interval_json(clopper_pearson(a.false_fixes, a.answered))}});
+                  {"false_fix_rate_95", evaluation::to_json(clopper_pearson(a.false_fixes, a.answered))}});
   }
   return {{"n", honesty.n},
           {"reliability", bins},

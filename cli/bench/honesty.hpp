@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/bench/intervals.hpp"
 #include "cli/bench/report.hpp"
+#include "cli/evaluation/intervals.hpp"
 
 namespace roadfix::bench {
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "cli/evaluation/intervals.hpp"
 #include "cli/evaluation/nees.hpp"
 #include "cli/evaluation/statistics.hpp"
 
@@ -98,6 +99,9 @@ void condense(const Samples& samples, Summary& summary) {
   summary.withdrawal_s_median = quantile(samples.withdrawal_s, 0.5);
 }
 
+// Runs are independent of each other, their steps are not.
+nlohmann::json share_95(int hits, int n) { return evaluation::to_json(evaluation::clopper_pearson(hits, n)); }
+
 nlohmann::json or_null(const std::optional<double>& value) { return value ? nlohmann::json(*value) : nlohmann::json(); }
 
 std::string text(const std::optional<double>& value, int digits = 1) {
@@ -144,13 +148,16 @@ Summary summary_of(std::span<const Run> runs, const Events& events) {
 nlohmann::json to_json(const Summary& s) {
   return {{"runs", s.runs},
           {"found", s.found},
+          {"found_share_95", share_95(s.found, s.runs)},
           {"updates_to_find", {{"median", or_null(s.updates_median)}, {"p90", or_null(s.updates_p90)}}},
           {"error_m", {{"median", or_null(s.error_median_m)}, {"p90", or_null(s.error_p90_m)}}},
           {"final_error_m", {{"median", or_null(s.final_error_median_m)}, {"p90", or_null(s.final_error_p90_m)}}},
           {"wrong_at_end", s.wrong_at_end},
           {"claims",
            {{"runs", s.claimed_runs},
+            {"runs_share_95", share_95(s.claimed_runs, s.runs)},
             {"first_false", s.first_claim_false},
+            {"first_false_share_95", share_95(s.first_claim_false, s.claimed_runs)},
             {"updates_median", or_null(s.claim_updates_median)},
             {"steps", s.claims},
             {"false_steps", s.false_claims},
@@ -159,6 +166,7 @@ nlohmann::json to_json(const Summary& s) {
           {"step_ms", {{"median", or_null(s.step_ms_median)}, {"p95", or_null(s.step_ms_p95)}}},
           {"particles_mean", or_null(s.particles_mean)},
           {"recovered", s.recovered},
+          {"recovered_share_95", share_95(s.recovered, s.runs)},
           {"recovery_s", {{"median", or_null(s.recovery_s_median)}, {"p90", or_null(s.recovery_s_p90)}}},
           {"withdrawal_s", {{"median", or_null(s.withdrawal_s_median)}}}};
 }

@@ -62,6 +62,7 @@ struct Summary {
 
 Summary summary_of(std::span<const Run> runs, const Events& events);
 
+/// With the 95 % intervals (Clopper and Pearson) of shares of runs.
 nlohmann::json to_json(const Summary& summary);
 /// One line for each filter.
 std::string to_table(std::span<const std::pair<std::string, Summary>> summaries, const Events& events);

@@ -63,6 +63,21 @@ TEST(FlightSummary, CountsRunsFoundLostAndWronglyConverged) {
   EXPECT_EQ(to_json(s)["claims"]["false_steps"], 10);
 }
 
+TEST(FlightSummary, TellsHowFarSharesOfFewRunsCanBeTrusted) {
+  Summary s;
+  s.runs = 20;
+  s.found = 20;
+  s.claimed_runs = 10;
+  s.first_claim_false = 5;
+  const nlohmann::json told = to_json(s);
+  // Brown, Cai, DasGupta 2001.
+  EXPECT_NEAR(told["found_share_95"][0], 1.0 - 0.16843, 1e-5);
+  EXPECT_EQ(told["found_share_95"][1], 1.0);
+  EXPECT_NEAR(told["claims"]["runs_share_95"][0], 0.27196, 1e-5);
+  EXPECT_NEAR(told["claims"]["first_false_share_95"][1], 0.81291, 1e-5);
+  EXPECT_NEAR(told["recovered_share_95"][1], 0.16843, 1e-5);
+}
+
 TEST(FlightSummary, KeepsItsColumnsApartWhereClaimsAreKilometresOff) {
   Summary s;
   s.claims = s.false_claims = 22;

@@ -1,8 +1,8 @@
-#include "cli/bench/intervals.hpp"
+#include "cli/evaluation/intervals.hpp"
 
 #include <gtest/gtest.h>
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 // Brown, Cai, DasGupta 2001 and the closed forms at the ends: 1 - (alpha / 2)^(1 / n).
@@ -31,4 +31,4 @@ TEST(ChiSquareBand, AgreesWithTables) {
 }
 
 }  // namespace
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

@@ -1,9 +1,10 @@
-#include "cli/bench/intervals.hpp"
+#include "cli/evaluation/intervals.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
-namespace roadfix::bench {
+namespace roadfix::evaluation {
 namespace {
 
 /// P(X <= hits) for X binomial(n, p).
@@ -32,6 +33,8 @@ double crossing(int hits, int n, double target) {
 
 }  // namespace
 
+nlohmann::json to_json(const Interval& interval) { return {interval.low, interval.high}; }
+
 Interval clopper_pearson(int hits, int n, double confidence) {
   if (n <= 0) return {0.0, 1.0};
   const double tail = 0.5 * (1.0 - confidence);
@@ -48,4 +51,4 @@ Interval chi_square_mean_band(int n, int degrees) {
   return {quantile(-kNormal95), quantile(kNormal95)};
 }
 
-}  // namespace roadfix::bench
+}  // namespace roadfix::evaluation

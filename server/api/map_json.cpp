@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::json;
 
-const char* status_of(const MapInfo& info) {
+const char* status_text(const MapInfo& info) {
   if (std::ranges::any_of(info.sources, &SourceStatus::is_damaged)) return "damaged";
   if (info.extent.empty()) return "empty";
   return info.pending > 0 || !missing_of(info).empty() ? "incomplete" : "ready";
@@ -20,7 +20,7 @@ const char* status_of(const MapInfo& info) {
 }  // namespace
 
 json summary_json(const MapInfo& info) {
-  json answer{{"status", status_of(info)},
+  json answer{{"status", status_text(info)},
               {"version", info.version},
               {"epsg", info.settings.zone.epsg()},
               {"cell_m", info.settings.cell_m},

@@ -10,7 +10,6 @@
 namespace roadfix::http {
 namespace {
 
-constexpr std::chrono::seconds kRetryAfter{1};
 constexpr std::chrono::milliseconds kLookPause{100};
 
 }  // namespace
@@ -42,13 +41,13 @@ Admission::Ticket Admission::enter(const std::string& client, std::chrono::stead
   }
   forget(name);
   if (gone) throw ClientGone();
-  if (sent_away) throw Busy("others wait, with fewer requests than this client; try again", kRetryAfter);
-  throw Busy("its turn did not come in the time that a request may wait; try again", kRetryAfter);
+  if (sent_away) throw Busy("others wait, with fewer requests than this client; try again", kRetrySoon);
+  throw Busy("its turn did not come in the time that a request may wait; try again", kRetrySoon);
 }
 
 void Admission::make_room_for(const Waiting& newcomer) {
   if (queue_.empty() || queue_.back()->rank <= newcomer.rank) {
-    throw Busy(fmt::format("{} requests run and {} wait already; try again", running_, queue_.size()), kRetryAfter);
+    throw Busy(fmt::format("{} requests run and {} wait already; try again", running_, queue_.size()), kRetrySoon);
   }
   queue_.pop_back();
   turn_.notify_all();

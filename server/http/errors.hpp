@@ -42,6 +42,9 @@ class ClientGone : public Interrupted {
   ClientGone();
 };
 
+/// For work that others let through in no time.
+inline constexpr std::chrono::seconds kRetrySoon{1};
+
 /// More work waits than the service takes on; worth trying again.
 class Busy : public Interrupted {
  public:

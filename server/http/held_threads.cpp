@@ -13,7 +13,6 @@ namespace roadfix::http {
 namespace {
 
 constexpr int kMostLeft = 8;
-constexpr std::chrono::seconds kRetryAfter{1};
 
 int left_to_others(int threads) { return std::min(kMostLeft, threads / 4); }
 
@@ -33,7 +32,7 @@ void HeldThreads::Share::take(HeldThreads& held, int most) {
     throw Busy(fmt::format("{} requests wait, run or stream already, and the other threads (serve --threads) are for "
                            "what is answered at once; try again",
                            most),
-               kRetryAfter);
+               kRetrySoon);
   }
   held_ = &held;
 }

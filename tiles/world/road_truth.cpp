@@ -23,7 +23,7 @@ struct Piece {
 };
 
 /// Liang and Barsky's clipping of a segment at a box.
-std::optional<Piece> clipped(PlanPoint a, PlanPoint b, double width_m, double height_m) {
+std::optional<Piece> clipped_piece(PlanPoint a, PlanPoint b, double width_m, double height_m) {
   const PlanPoint d = b - a;
   double enter = 0.0;
   double leave = 1.0;
@@ -95,7 +95,7 @@ ordered_json feature_of(const Street& street, const Polyline& line, const Placem
 std::vector<Polyline> clipped(const Polyline& line, double width_m, double height_m) {
   std::vector<Polyline> parts;
   for (std::size_t i = 0; i + 1 < line.size(); ++i) {
-    const std::optional<Piece> piece = clipped(line[i], line[i + 1], width_m, height_m);
+    const std::optional<Piece> piece = clipped_piece(line[i], line[i + 1], width_m, height_m);
     if (!piece) continue;
     if (parts.empty() || parts.back().back() != piece->from) parts.push_back({piece->from});
     parts.back().push_back(piece->to);

@@ -16,7 +16,7 @@
 namespace roadfix {
 namespace {
 
-struct Piece {
+struct Kept {
   int value = 0;
   std::size_t size = 10;
   std::size_t bytes() const { return size; }
@@ -28,7 +28,7 @@ TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
   SearchCache cache(1000);
   int built = 0;
   const auto get = [&](int col, const SearchCache::Parameters& parameters) {
-    return cache.get<Piece>(window(col), parameters, {}, [&] { return Piece{++built}; })->value;
+    return cache.get<Kept>(window(col), parameters, {}, [&] { return Kept{++built}; })->value;
   };
   EXPECT_EQ(get(1, {5, 4}), 1);
   EXPECT_EQ(get(1, {5, 4}), 1);
@@ -42,7 +42,7 @@ TEST(SearchCache, BuildsOnceForEachWindowAndParameters) {
 TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
   SearchCache cache(25);
   int built = 0;
-  const auto get = [&](int col) { return cache.get<Piece>(window(col), {}, {}, [&] { return Piece{++built}; }); };
+  const auto get = [&](int col) { return cache.get<Kept>(window(col), {}, {}, [&] { return Kept{++built}; }); };
   get(1);
   get(2);
   get(1);
@@ -50,7 +50,7 @@ TEST(SearchCache, StaysWithinItsBytesAndGivesUpWhatWasNotAskedForTheLongest) {
   EXPECT_EQ(cache.bytes(), 20U);
   EXPECT_EQ(get(1)->value, 1);
   EXPECT_EQ(get(2)->value, 4);
-  const auto large = cache.get<Piece>(window(9), {}, {}, [] { return Piece{7, 100}; });
+  const auto large = cache.get<Kept>(window(9), {}, {}, [] { return Kept{7, 100}; });
   EXPECT_EQ(large->value, 7) << "what does not fit is used all the same";
   EXPECT_LE(cache.bytes(), 25U);
 }
@@ -60,7 +60,7 @@ TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
   SearchCache cache(std::size_t{10} * kMany);
   const auto time_of = [&](int first) {
     const std::clock_t begin = std::clock();
-    for (int col = first; col < first + kMany; ++col) cache.get<Piece>(window(col), {}, {}, [] { return Piece{}; });
+    for (int col = first; col < first + kMany; ++col) cache.get<Kept>(window(col), {}, {}, [] { return Kept{}; });
     return static_cast<double>(std::clock() - begin);
   };
   const double filling = time_of(0);
@@ -71,9 +71,9 @@ TEST(SearchCache, GivesUpTheOldestAsFastHoweverMuchIsKept) {
 
 TEST(SearchCache, WhatFailedIsBuiltAnew) {
   SearchCache cache(100);
-  const auto fails = []() -> Piece { throw std::runtime_error("no"); };
-  EXPECT_THROW(cache.get<Piece>(window(1), {}, {}, fails), std::runtime_error);
-  EXPECT_EQ(cache.get<Piece>(window(1), {}, {}, [] { return Piece{8}; })->value, 8);
+  const auto fails = []() -> Kept { throw std::runtime_error("no"); };
+  EXPECT_THROW(cache.get<Kept>(window(1), {}, {}, fails), std::runtime_error);
+  EXPECT_EQ(cache.get<Kept>(window(1), {}, {}, [] { return Kept{8}; })->value, 8);
 }
 
 TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
@@ -84,7 +84,7 @@ TEST(SearchCache, ManyThreadsThatWantTheSameBuildItOnce) {
     for (int i = 0; i < 8; ++i) {
       threads.emplace_back([&] {
         for (int k = 0; k < 50; ++k) {
-          const auto piece = cache.get<Piece>(window(k), {}, {}, [&] { return Piece{++built > 0 ? 2 * k : 0}; });
+          const auto piece = cache.get<Kept>(window(k), {}, {}, [&] { return Kept{++built > 0 ? 2 * k : 0}; });
           EXPECT_EQ(piece->value, k * 2);
         }
       });
@@ -99,20 +99,20 @@ TEST(SearchCache, WaitsForWhatAnotherBuildsNoLongerThanTheDeadline) {
   std::latch begun(1);
   std::latch may_end(1);
   std::jthread other([&] {
-    cache.get<Piece>(window(1), {}, {}, [&] {
+    cache.get<Kept>(window(1), {}, {}, [&] {
       begun.count_down();
       may_end.wait();
-      return Piece{5};
+      return Kept{5};
     });
   });
   begun.wait();
   const Deadline soon({}, std::chrono::steady_clock::now() + std::chrono::milliseconds(30));
-  EXPECT_EQ(cache.get<Piece>(window(1), {}, soon, [] { return Piece{6}; }), nullptr);
+  EXPECT_EQ(cache.get<Kept>(window(1), {}, soon, [] { return Kept{6}; }), nullptr);
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(cache.get<Piece>(window(1), {}, Deadline(stop.get_token()), [] { return Piece{6}; }), Interrupted);
+  EXPECT_THROW(cache.get<Kept>(window(1), {}, Deadline(stop.get_token()), [] { return Kept{6}; }), Interrupted);
   may_end.count_down();
-  EXPECT_EQ(cache.get<Piece>(window(1), {}, {}, [] { return Piece{6}; })->value, 5);
+  EXPECT_EQ(cache.get<Kept>(window(1), {}, {}, [] { return Kept{6}; })->value, 5);
 }
 
 }  // namespace

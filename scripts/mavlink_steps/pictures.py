@@ -86,9 +86,10 @@ class NewPictures:
         rewritten = set()
         if not self._to_look_at:
             self._to_look_at = sorted(self._finished, reverse=True)
+        folder = str(self._folder)  # to join paths takes longer than to look at a file
         for name in self._to_look_at[-LOOKS:]:
             try:
-                if not self._finished[name].is_of(os.stat(self._folder / name)):
+                if not self._finished[name].is_of(os.stat(f"{folder}/{name}")):
                     rewritten.add(name)
             except OSError:  # removed
                 continue

@@ -166,7 +166,7 @@ void detect(const DetectOptions& options, const Job& job, const RoadDetector& de
   const Picture picture = read_picture(options, job.image, detector);
   const api::Features features = api::detected(picture.frame, {detector, options.cell_m, {}, options.seed});
   const FeatureMap& map = features.map;
-  if (map.cells.observed_count() == 0) {
+  if (!map.cells.any_observed()) {
     throw InvalidInput("image-unobserved", fmt::format("{}: no pixel of it was seen", job.image));
   }
   const std::vector<std::uint8_t> png = encode_feature_map(map, detector.describe());

@@ -13,6 +13,8 @@ std::size_t CellArray::observed_count() const {
   return cells_.size() - static_cast<std::size_t>(std::count(cells_.begin(), cells_.end(), kUnobserved));
 }
 
+bool CellArray::any_observed() const { return std::ranges::any_of(cells_, is_observed); }
+
 void paste(const CellArray& source, CellArray& target, int col, int row) {
   const int first_col = std::max(0, -col);
   const int last_col = std::min(source.cols(), target.cols() - col);

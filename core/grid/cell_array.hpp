@@ -34,6 +34,7 @@ class CellArray {
   std::span<const Cell> cells() const { return cells_; }
 
   std::size_t observed_count() const;
+  bool any_observed() const;
 
   friend bool operator==(const CellArray&, const CellArray&) = default;
 

@@ -74,7 +74,7 @@ class PlaceFinder {
     constexpr double kCellsAcross = 64.0;
     const GridBox box = box_of(part);
     const double coarse_m = std::max(box.width_m(), box.height_m()) / kCellsAcross;
-    if (read_around(part, coarse_m).cells.observed_count() == 0) return;
+    if (!read_around(part, coarse_m).cells.any_observed()) return;
     Part first = part;
     Part second = part;
     if (part.cols >= part.rows) {

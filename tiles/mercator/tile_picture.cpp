@@ -70,7 +70,7 @@ std::optional<std::vector<std::byte>> tile_png(const MapView& map, TileAddress t
   const GridBox needed = grown(intersection(ground.box(), map.extent), 2.0 * cell_m);
   if (needed.empty()) return std::nullopt;
   const RoadGrid grid = map.read(GridGeometry::covering(needed, cell_m));
-  if (grid.cells.observed_count() == 0) return std::nullopt;
+  if (!grid.cells.any_observed()) return std::nullopt;
 
   return painted_tile(ground, box, [&](GridPoint point) -> std::optional<Pixel> {
     const auto cell = sample(grid, point);

@@ -20,7 +20,10 @@ class LineCoverage {
   /// Adds all ground within `half_width_m` of the segment.
   void add(GridPoint from, GridPoint to, double half_width_m);
   /// How many of the kSamples of the cell are covered.
-  int covered(int col, int row) const { return std::popcount(samples_[index(col, row)]); }
+  int covered(int col, int row) const {
+    const std::uint64_t samples = samples_[index(col, row)];
+    return samples == 0 ? 0 : std::popcount(samples);  // of most cells none: counting is a call where no popcnt is sure
+  }
 
  private:
   std::size_t index(int col, int row) const {

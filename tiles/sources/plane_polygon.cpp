@@ -96,7 +96,7 @@ std::vector<PlanePolygon::Crossing> PlanePolygon::crossings(const GridGeometry& 
   return found;
 }
 
-void PlanePolygon::mark(const GridGeometry& block, std::vector<bool>& inside) const {
+void PlanePolygon::fill(const GridGeometry& block, Cell value, CellArray& cells) const {
   const std::vector<Crossing> found = crossings(block);  // an even number in each row
   for (std::size_t i = 0; i + 1 < found.size(); i += 2) {
     // Cell centres at or right of the first crossing and left of the second, so that neighbours share no cell.
@@ -104,8 +104,8 @@ void PlanePolygon::mark(const GridGeometry& block, std::vector<bool>& inside) co
     const double last = std::ceil(found[i + 1].east_m / block.cell_m - 0.5 - block.origin.col) - 1.0;
     const auto begin = static_cast<int>(std::clamp(first, 0.0, static_cast<double>(block.cols)));
     const auto end = static_cast<int>(std::clamp(last, -1.0, block.cols - 1.0));
-    const auto row = static_cast<std::size_t>(found[i].row) * static_cast<std::size_t>(block.cols);
-    for (int col = begin; col <= end; ++col) inside[row + static_cast<std::size_t>(col)] = true;
+    const auto row = cells.row(found[i].row);
+    std::fill(row.begin() + begin, row.begin() + end + 1, value);
   }
 }
 

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/grid/cell_array.hpp"
 #include "core/grid/geometry.hpp"
 
 namespace roadfix {
@@ -18,8 +19,8 @@ class PlanePolygon {
   explicit PlanePolygon(const std::vector<GridPoint>& outer, const std::vector<std::vector<GridPoint>>& holes = {});
 
   const GridBox& box() const { return box_; }
-  /// Sets the cells whose centre lies inside to true.
-  void mark(const GridGeometry& block, std::vector<bool>& inside) const;
+  /// Gives the cells of the block whose centre lies inside this value.
+  void fill(const GridGeometry& block, Cell value, CellArray& cells) const;
 
  private:
   struct Edge {

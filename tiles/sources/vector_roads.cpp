@@ -69,6 +69,12 @@ class SegmentIndex {
     }
   }
 
+  bool any_near(const GridBox& box) const {
+    bool any = false;
+    visit(box, [&](const Segment&) { any = true; });
+    return any;
+  }
+
  private:
   struct Squares {
     int first = 0;
@@ -149,18 +155,18 @@ class RoadVectors final : public CellSource {
 
   CellArray read(const GridGeometry& block, std::uint64_t) const override {
     const GridBox box = block.box();
-    std::vector<bool> inside(static_cast<std::size_t>(block.cols) * static_cast<std::size_t>(block.rows), false);
-    for (const PlanePolygon& polygon : covered_) {
-      if (polygon.box().overlaps(box)) polygon.mark(block, inside);
-    }
-    LineCoverage coverage(block);
-    index_.visit(box, [&](const Segment& s) { coverage.add(s.from, s.to, s.half_width_m); });
     const auto cells = cells_by_coverage();
     CellArray result(block.cols, block.rows);
-    std::size_t i = 0;
+    for (const PlanePolygon& polygon : covered_) {
+      if (polygon.box().overlaps(box)) polygon.fill(block, cells.front(), result);
+    }
+    if (!index_.any_near(box)) return result;
+    LineCoverage coverage(block);
+    index_.visit(box, [&](const Segment& s) { coverage.add(s.from, s.to, s.half_width_m); });
     for (int row = 0; row < block.rows; ++row) {
       for (int col = 0; col < block.cols; ++col) {
-        if (inside[i++]) result.at(col, row) = cells[static_cast<std::size_t>(coverage.covered(col, row))];
+        const auto covered = static_cast<std::size_t>(coverage.covered(col, row));
+        if (covered > 0 && is_observed(result.at(col, row))) result.at(col, row) = cells[covered];
       }
     }
     return result;

@@ -45,7 +45,7 @@ bool EvidenceTable::put(std::int64_t source_id, TileIndex block, const CellArray
   const bool expected = mark_done_.with(source_id, block.col, row).step();
   mark_done_.reset();
   if (!expected) return false;
-  if (cells.observed_count() > 0) {
+  if (cells.any_observed()) {
     const std::vector<std::byte> png = encode_tile(cells, TileDepth::kEvidence);
     put_.with(source_id, block.col, row, std::span(png)).run();
   } else {

@@ -39,7 +39,7 @@ std::int64_t FusionQueue::size() { return count_pending(map_); }
 std::vector<std::byte> FusionQueue::fused(Tile tile) {
   const auto [zoom, index] = tile;
   const auto cells = tiles_.derived(zoom, index);
-  if (!cells || cells->observed_count() == 0) return {};
+  if (!cells || !cells->any_observed()) return {};
   return encode_tile(*cells, TileDepth::kFused);
 }
 

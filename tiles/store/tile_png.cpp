@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <mutex>
 #include <utility>
@@ -74,7 +73,7 @@ std::vector<std::byte> encoded_once(const CellArray& cells, TileDepth depth) {
 std::vector<std::byte> encode_tile(const CellArray& cells, TileDepth depth) {
   assert(cells.cols() == kTileCells && cells.rows() == kTileCells);
   const auto all = cells.cells();
-  const bool alike = std::ranges::adjacent_find(all, std::ranges::not_equal_to{}) == all.end();
+  const bool alike = std::equal(all.begin() + 1, all.end(), all.begin());
   return alike ? encoded_once(cells, depth) : encoded(cells, depth);
 }
 

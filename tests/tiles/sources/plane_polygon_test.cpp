@@ -33,14 +33,14 @@ bool contains(const std::vector<Ring>& rings, GridPoint p) {
 void expect_cells_of(const Ring& outer, const std::vector<Ring>& holes, const GridGeometry& block) {
   std::vector<Ring> rings = holes;
   rings.push_back(outer);
-  std::vector<bool> inside(static_cast<std::size_t>(block.cols) * static_cast<std::size_t>(block.rows), false);
+  CellArray inside(block.cols, block.rows);
   const PlanePolygon polygon(outer, holes);
-  polygon.mark(block, inside);
+  polygon.fill(block, kNoRoad, inside);
   const GridBox box = polygon.box();
   int wrong = 0;
   for (int row = 0; row < block.rows; ++row) {
     for (int col = 0; col < block.cols; ++col) {
-      const bool marked = inside[static_cast<std::size_t>(row * block.cols + col)];
+      const bool marked = is_observed(inside.at(col, row));
       const GridPoint centre = block.cell_center(col, row);
       // Holes leave no ground beyond the outer ring.
       const bool beside = centre.north_m >= box.min.north_m && centre.north_m <= box.max.north_m;
@@ -71,11 +71,15 @@ TEST(PlanePolygon, MarksCellsWhoseCentreIsInsideAndSharesNoneWithItsNeighbour) {
                             box.max,
                             {box.min.east_m, box.max.north_m},
                             middle});
-  std::vector<bool> in_left(std::size_t{24} * 20, false);
-  std::vector<bool> in_right(std::size_t{24} * 20, false);
-  left.mark(kCells, in_left);
-  right.mark(kCells, in_right);
-  for (std::size_t i = 0; i < in_left.size(); ++i) EXPECT_NE(in_left[i], in_right[i]) << i % 24 << ' ' << i / 24;
+  CellArray in_left(kCells.cols, kCells.rows);
+  CellArray in_right(kCells.cols, kCells.rows);
+  left.fill(kCells, kNoRoad, in_left);
+  right.fill(kCells, kNoRoad, in_right);
+  for (int row = 0; row < kCells.rows; ++row) {
+    for (int col = 0; col < kCells.cols; ++col) {
+      EXPECT_NE(in_left.at(col, row), in_right.at(col, row)) << col << ' ' << row;
+    }
+  }
 }
 
 TEST(PlanePolygon, EqualsCountingOfCrossingsForManyRandomPolygonsAndBlocks) {

@@ -112,7 +112,8 @@ void require_fitting_points(const RasterFile& file) {
 
 /// West, south, east and north of the image in degrees, as GDAL wants them. Left to itself GDAL (3.6) counts the
 /// longitudes from the prime meridian of the reference system, finds no way from its datum around there, and leaves the
-/// datum as it is. Empty where it cannot be told.
+/// datum as it is. In whole degrees where the ellipsoid is that of WGS 84: GDAL keeps the way that it found within an
+/// area, and to find one takes longer than to read a small image. Empty where it cannot be told.
 std::string area_of_interest(const RasterFile& file) {
   const GdalMessages messages;
   const PixelTransformerPtr to_reference(
@@ -131,7 +132,12 @@ std::string area_of_interest(const RasterFile& file) {
     if (to_earth->Transform(1, &lon, &lat) == FALSE) return "";
     area.Merge(lon, lat);
   }
-  return fmt::format("{},{},{},{}", area.MinX, area.MinY, area.MaxX, area.MaxY);
+  const auto text = [](double west, double south, double east, double north) {
+    return fmt::format("{},{},{},{}", west, south, east, north);
+  };
+  if (on_old_ellipsoid(file.crs())) return text(area.MinX, area.MinY, area.MaxX, area.MaxY);
+  if (!(area.MinX >= -180.0 && area.MaxX <= 180.0 && area.MinY >= -90.0 && area.MaxY <= 90.0)) return "";
+  return text(std::floor(area.MinX), std::floor(area.MinY), std::ceil(area.MaxX), std::ceil(area.MaxY));
 }
 
 PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialReference& target) {
@@ -142,7 +148,7 @@ PixelTransformerPtr create_transformer(const RasterFile& file, const OGRSpatialR
   CPLStringList options;
   options.SetNameValue("SRC_SRS", wkt(file.crs()).c_str());
   options.SetNameValue("DST_SRS", wkt(target).c_str());
-  const std::string area = on_old_ellipsoid(file.crs()) ? area_of_interest(file) : "";
+  const std::string area = area_of_interest(file);
   if (!area.empty()) options.SetNameValue("AREA_OF_INTEREST", area.c_str());
   // Of the scene's mean height: hills are misplaced by their share of the view's slant. With a terrain model at hand,
   // gdalwarp -rpc -to RPC_DEM=... makes an orthoimage first.

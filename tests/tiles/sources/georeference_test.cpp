@@ -45,7 +45,8 @@ TEST_F(GeoreferenceTest, LiesWhereVectorsOfItsReferenceSystemLieWhateverTheirPri
     double lon_deg;
   };
   for (const auto& [epsg, lat_deg, lon_deg] :
-       {Place{31288, 47.2, 10.7}, Place{20790, 39.5, -7.9}, Place{27391, 60.5, 6.0}, Place{27572, 46.7, -3.5}}) {
+       {Place{31288, 47.2, 10.7}, Place{20790, 39.5, -7.9}, Place{27391, 60.5, 6.0}, Place{27572, 46.7, -3.5},
+        Place{26986, 42.4, -71.1}, Place{2154, 46.7, -3.5}}) {
     OGRSpatialReference crs;
     crs.importFromEPSG(epsg);
     crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);

@@ -9,7 +9,7 @@
 #include "core/grid/resample.hpp"
 #include "core/locate/decision.hpp"
 #include "core/locate/footprint_refusal.hpp"
-#include "core/locate/frame_halves.hpp"
+#include "core/locate/frame_parts.hpp"
 #include "core/locate/match_poses.hpp"
 #include "core/locate/other_places.hpp"
 #include "core/locate/prepare.hpp"
@@ -63,7 +63,7 @@ bool is_found_beside(const MapView& map, const FeatureMap& own_frame, const Sear
                       on_grid(found.modes.front().pose, map.zone));
 }
 
-/// Refuses a likely place where the frame that is asked for, or a half of it, does not fit by itself.
+/// Refuses a likely place where the frame that is asked for, or a part of it, does not fit by itself.
 void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const FixOptions& options, const SearchMode& best) {
   const std::optional<FeatureMap>& own_frame = options.own_frame;
   const FeatureMap asked_for = own_frame ? in_cells_of(map, *own_frame) : cells;
@@ -76,14 +76,14 @@ void confirm(Fix& fix, const MapView& map, const FeatureMap& cells, const FixOpt
         "the frames fit at one place together, but the one whose position is asked for does not fit there by "
         "itself, fits better beside it, or contradicts the others: check where the others were taken from, and "
         "that no frame or movement comes late");
-  } else if (const char* half = contradicting_half(map, frame, best.pose)) {
+  } else if (const char* part = contradicting_part(map, frame, best.pose)) {
     refuse_place(
         fix, "halves-contradict",
-        fmt::format("the roads fit best at one place, but the {} half of the frame does not fit there by itself: "
+        fmt::format("the roads fit best at one place, but the {} of the frame does not fit there by itself: "
                     "part of the picture may be older than the rest, or not of the ground, or it is laid out wrongly; "
                     "leave out frames that the decoder reports as damaged, paint black what covers the ground, and "
                     "check the lens and, of a camera that leans, roll and pitch",
-                    half));
+                    part));
   }
 }
 

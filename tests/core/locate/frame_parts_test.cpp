@@ -1,4 +1,4 @@
-#include "core/locate/frame_halves.hpp"
+#include "core/locate/frame_parts.hpp"
 
 #include <gtest/gtest.h>
 
@@ -66,17 +66,17 @@ constexpr std::string_view kElsewhere = R"(
   .....#############......
   .....#...........#......)";
 
-class FrameHalves : public ::testing::Test {
+class FrameParts : public ::testing::Test {
  protected:
   RoadGrid map_{{5.0, {120'000, -1'280'000}, kSide, kSide}, from_ascii(kTown)};
   CellArray frame_ = from_ascii(kTown);
   const CellArray elsewhere_ = from_ascii(kElsewhere);
 
-  /// Of the frame above the middle of the map, north up; "none" where no half contradicts.
+  /// Of the frame above the middle of the map, north up; "none" where no part contradicts.
   std::string contradicting() const {
     const GridPose pose{map_.geometry.box().centre(), Angle()};
-    const char* half = contradicting_half(testing::view_of(map_), FeatureMap::centred(frame_, 5.0), pose);
-    return half ? half : "none";
+    const char* part = contradicting_part(testing::view_of(map_), FeatureMap::centred(frame_, 5.0), pose);
+    return part ? part : "none";
   }
 };
 
@@ -87,40 +87,56 @@ void show(const CellArray& from, CellArray& in, int first_col, int first_row, in
   }
 }
 
-TEST_F(FrameHalves, AllFitWhereTheFrameShowsTheGround) { EXPECT_EQ(contradicting(), "none"); }
+TEST_F(FrameParts, AllFitWhereTheFrameShowsTheGround) { EXPECT_EQ(contradicting(), "none"); }
 
-TEST_F(FrameHalves, ContradictWhereOneShowsOtherGround) {
+TEST_F(FrameParts, ContradictWhereAHalfShowsOtherGround) {
   constexpr int kHalf = kSide / 2;
   const CellArray town = frame_;
   show(elsewhere_, frame_, 0, 0, kHalf, kSide);
-  EXPECT_EQ(contradicting(), "left");
+  EXPECT_EQ(contradicting(), "left half");
   frame_ = town;
   show(elsewhere_, frame_, kHalf, 0, kHalf, kSide);
-  EXPECT_EQ(contradicting(), "right");
+  EXPECT_EQ(contradicting(), "right half");
   frame_ = town;
   show(elsewhere_, frame_, 0, 0, kSide, kHalf);
-  EXPECT_EQ(contradicting(), "upper");
+  EXPECT_EQ(contradicting(), "upper half");
   frame_ = town;
   show(elsewhere_, frame_, 0, kHalf, kSide, kHalf);
-  EXPECT_EQ(contradicting(), "lower");
+  EXPECT_EQ(contradicting(), "lower half");
 }
 
-TEST_F(FrameHalves, AreThoseOfTheCellsThatWereObserved) {
+TEST_F(FrameParts, ContradictWhereAQuarterShowsOtherGround) {
+  constexpr int kQuarter = kSide / 4;
+  const CellArray town = frame_;
+  show(elsewhere_, frame_, 0, 0, kQuarter, kSide);
+  EXPECT_EQ(contradicting(), "left quarter");
+  frame_ = town;
+  show(elsewhere_, frame_, kSide - kQuarter, 0, kQuarter, kSide);
+  EXPECT_EQ(contradicting(), "right quarter");
+  frame_ = town;
+  show(elsewhere_, frame_, 0, 0, kSide, kQuarter);
+  EXPECT_EQ(contradicting(), "upper quarter");
+  frame_ = town;
+  show(elsewhere_, frame_, 0, kSide - kQuarter, kSide, kQuarter);
+  EXPECT_EQ(contradicting(), "lower quarter");
+}
+
+TEST_F(FrameParts, AreThoseOfTheCellsThatWereObserved) {
   show(elsewhere_, frame_, 0, 0, kSide, 9);
   show(CellArray(kSide, kSide), frame_, 0, 18, kSide, 6);
-  EXPECT_EQ(contradicting(), "upper");
+  EXPECT_EQ(contradicting(), "upper half");
 }
 
-TEST_F(FrameHalves, ContradictNothingWhereTheFrameShowsTooLittleRoadInOne) {
+TEST_F(FrameParts, ContradictNothingWhereTheFrameShowsTooLittleRoadInOne) {
   CellArray hidden(kSide, kSide, kNoRoad);
   hidden.at(20, 2) = kRoad;  // a speck that the map does not have
   show(hidden, frame_, kSide / 2, 0, kSide / 2, kSide);
   EXPECT_EQ(contradicting(), "none");
 }
 
-TEST_F(FrameHalves, ContradictNothingWhereTheMapShowsTooLittleInOne) {
+TEST_F(FrameParts, ContradictNothingWhereTheMapShowsTooLittleInOne) {
   show(elsewhere_, frame_, kSide / 2, 0, kSide / 2, kSide);
-  ASSERT_EQ(contradicting(), "right");
+  ASSERT_EQ(contradicting(), "right half");
   for (const Cell cell : {kNoRoad, kUnobserved}) {
     show(CellArray(kSide, kSide, cell), map_.cells, kSide / 2, 0, kSide / 2, kSide);
     EXPECT_EQ(contradicting(), "none");

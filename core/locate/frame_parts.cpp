@@ -22,7 +22,7 @@ namespace {
 // Of correlations by chance, by which that of a part has to be less: parts of small frames differ anyway.
 constexpr double kDeviations = 2.0;
 
-struct Part {
+struct FramePart {
   const char* name;
   bool of_rows;  ///< else of columns
   bool first;
@@ -31,14 +31,14 @@ struct Part {
 };
 // The whole is about the mean of two halves: where one has less than half of it, the other fits three times as well.
 // A quarter differs more from the rest, in frames of one place too.
-constexpr std::array<Part, 8> kParts{{{"left half", false, true, 0.5, 0.5},
-                                      {"right half", false, false, 0.5, 0.5},
-                                      {"upper half", true, true, 0.5, 0.5},
-                                      {"lower half", true, false, 0.5, 0.5},
-                                      {"left quarter", false, true, 0.25, 1.0 / 3.0},
-                                      {"right quarter", false, false, 0.25, 1.0 / 3.0},
-                                      {"upper quarter", true, true, 0.25, 1.0 / 3.0},
-                                      {"lower quarter", true, false, 0.25, 1.0 / 3.0}}};
+constexpr std::array<FramePart, 8> kFrameParts{{{"left half", false, true, 0.5, 0.5},
+                                                {"right half", false, false, 0.5, 0.5},
+                                                {"upper half", true, true, 0.5, 0.5},
+                                                {"lower half", true, false, 0.5, 0.5},
+                                                {"left quarter", false, true, 0.25, 1.0 / 3.0},
+                                                {"right quarter", false, false, 0.25, 1.0 / 3.0},
+                                                {"upper quarter", true, true, 0.25, 1.0 / 3.0},
+                                                {"lower quarter", true, false, 0.25, 1.0 / 3.0}}};
 
 /// How many rows or columns from the first on hold that share of the observed cells.
 int lines_of_first(double share, const CellArray& cells, bool of_rows) {
@@ -56,7 +56,7 @@ int lines_of_first(double share, const CellArray& cells, bool of_rows) {
   return lines;
 }
 
-FeatureMap part_of(FeatureMap frame, const Part& part) {
+FeatureMap part_of(FeatureMap frame, const FramePart& part) {
   CellArray& cells = frame.cells;
   const int lines = lines_of_first(part.first ? part.share : 1.0 - part.share, cells, part.of_rows);
   for (int row = 0; row < cells.rows(); ++row) {
@@ -95,7 +95,7 @@ bool tells_a_place(const MapView& map, const FeatureMap& part, const GridPose& p
 
 const char* contradicting_part(const MapView& map, const FeatureMap& frame, const GridPose& pose) {
   const double whole = pearson(soft_sums(map, frame, pose)).value_or(0.0);
-  for (const Part& part : kParts) {
+  for (const FramePart& part : kFrameParts) {
     const FeatureMap shown = part_of(frame, part);
     if (falls_short(soft_sums(map, shown, pose), shown.cell_m, whole, part.least_share) &&
         tells_a_place(map, shown, pose)) {

@@ -9,20 +9,20 @@
 namespace roadfix::bench {
 namespace {
 
-const UtmZone kZone = UtmZone::containing({37.76, 38.28});
+const UtmZone kUtm = UtmZone::containing({37.76, 38.28});
 
 Outcome outcome(FixStatus status, double error_m, double heading_error_deg) {
-  const GridPoint truth = kZone.project({37.76, 38.28});
+  const GridPoint truth = kUtm.project({37.76, 38.28});
   Answer answer;
   answer.status = status;
   answer.best =
-      GeoPose{kZone.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
-  return judged("q", GeoPose{kZone.unproject(truth), Angle::degrees(350)}, answer, kZone);
+      GeoPose{kUtm.unproject({truth.east_m + error_m, truth.north_m}), Angle::degrees(350 + heading_error_deg)};
+  return judged("q", GeoPose{kUtm.unproject(truth), Angle::degrees(350)}, answer, kUtm);
 }
 
 TEST(Summary, CountsRecallOverAllAndErrorsOverTheAnswered) {
   const std::vector<Outcome> outcomes = {outcome(FixStatus::kFix, 3.0, 1.0), outcome(FixStatus::kFix, 40.0, 15.0),
-                                         outcome(FixStatus::kAmbiguous, 8.0, 2.0), judged("none", {}, Answer{}, kZone)};
+                                         outcome(FixStatus::kAmbiguous, 8.0, 2.0), judged("none", {}, Answer{}, kUtm)};
   const Summary s = summary_of(outcomes);
   EXPECT_EQ(s.n, 4);
   EXPECT_EQ(s.answered, 2);
@@ -40,14 +40,14 @@ TEST(Summary, TellsWhatOfTheTruePlaceWasSeenAgain) {
   a.keypoints = {100, 3};
   Answer b;
   b.keypoints = {50, 0};
-  const std::vector<Outcome> keypoints = {judged("a", {}, a, kZone), judged("b", {}, b, kZone)};
+  const std::vector<Outcome> keypoints = {judged("a", {}, a, kUtm), judged("b", {}, b, kUtm)};
   EXPECT_EQ(summary_of(keypoints).mean_matches, 75.0);
   EXPECT_EQ(summary_of(keypoints).mean_right_matches, 1.5);
   EXPECT_NE(to_table({{MethodName::kSift, "m", "q", keypoints}}).find("1.5 of 75 matches right"), std::string::npos);
 
   Answer roads;
   roads.rho_at_truth = 0.4;
-  const std::vector<Outcome> outcomes = {judged("a", {}, roads, kZone), judged("b", {}, Answer{}, kZone)};
+  const std::vector<Outcome> outcomes = {judged("a", {}, roads, kUtm), judged("b", {}, Answer{}, kUtm)};
   EXPECT_EQ(summary_of(outcomes).median_rho_at_truth, 0.4);
   EXPECT_FALSE(summary_of(outcomes).mean_matches);
   EXPECT_NE(to_table({{MethodName::kRoads, "m", "q", outcomes}}).find("rho 0.40"), std::string::npos);
@@ -56,7 +56,7 @@ TEST(Summary, TellsWhatOfTheTruePlaceWasSeenAgain) {
 TEST(Summary, CountsNoTimeWhereNoPlaceWasLookedFor) {
   Answer asked;
   asked.time_ms = 80.0;
-  const std::vector<Outcome> outcomes = {judged("a", {}, asked, kZone), judged("b", {}, Answer{}, kZone)};
+  const std::vector<Outcome> outcomes = {judged("a", {}, asked, kUtm), judged("b", {}, Answer{}, kUtm)};
   EXPECT_EQ(summary_of(outcomes).time_p50_ms, 80.0);
 }
 
@@ -75,13 +75,13 @@ TEST(Report, GivesTheEllipseThatEachNeesFollowsFrom) {
   answer.best = mode.pose;
   answer.mode = mode;
   const GeoPose truth{{37.76, 38.28009}, {}};  // about 8 m to the east
-  const auto query = to_json({MethodName::kRoads, "m", "q", {judged("a", truth, answer, kZone)}})["queries"][0];
+  const auto query = to_json({MethodName::kRoads, "m", "q", {judged("a", truth, answer, kUtm)}})["queries"][0];
   EXPECT_EQ(query["ellipse"]["sigma_m"], (std::vector<double>{4.0, 2.0}));
   EXPECT_NEAR(query["ellipse"]["heading_deg"].get<double>(), 90.0, 1e-9);
   EXPECT_NEAR(query["ellipse"]["heading_sigma_deg"].get<double>(), 0.5, 1e-9);
   const double error_m = query["error_m"];
   EXPECT_NEAR(query["position_nees"].get<double>(), error_m * error_m / 16.0, 0.01);
-  EXPECT_EQ(to_json({MethodName::kSift, "m", "q", {judged("a", truth, {}, kZone)}})["queries"][0]["ellipse"], nullptr);
+  EXPECT_EQ(to_json({MethodName::kSift, "m", "q", {judged("a", truth, {}, kUtm)}})["queries"][0]["ellipse"], nullptr);
 }
 
 TEST(Table, KeepsItsColumnsApartForLongNames) {

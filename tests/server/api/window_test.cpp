@@ -16,7 +16,7 @@ using roadfix::testing::from_ascii;
 using roadfix::testing::to_ascii;
 
 /// A map of the picture's cells, 2 m each, with its north-western corner at (434000, 4180000) of zone 37 N.
-MapView map_of(const std::string& picture) {
+MapView view_of_picture(const std::string& picture) {
   const CellArray cells = from_ascii(picture);
   const GridGeometry geometry{2.0, {217000, -2090000}, cells.cols(), cells.rows()};
   const RoadGrid whole{geometry, cells};
@@ -40,7 +40,7 @@ constexpr const char* kPicture = R"(
 LatLon at(double east_m, double north_m) { return UtmZone::from_epsg(32637)->unproject({east_m, north_m}); }
 
 TEST(Window, AlongTheGridGivesTheMapsOwnCellsAndTheNearestSuchCentre) {
-  const MapView map = map_of(kPicture);
+  const MapView map = view_of_picture(kPicture);
   const Window window = cut_window(map, {at(434010.3, 4179994.2), std::nullopt, 20.0, 12.0, std::nullopt}, {});
   EXPECT_EQ(to_ascii(window.cells.cells), to_ascii(from_ascii(kPicture)));
   EXPECT_NEAR(window.grid_pose.position.east_m, 434010.0, 1e-6);
@@ -48,7 +48,7 @@ TEST(Window, AlongTheGridGivesTheMapsOwnCellsAndTheNearestSuchCentre) {
 }
 
 TEST(Window, ReadsNoMoreOfTheMapThanALongWindowOnASlantMeets) {
-  MapView map = map_of(kPicture);
+  MapView map = view_of_picture(kPicture);
   const auto read = [&](const GridBox& extent, double width_m) {
     double max_cells = 0.0;
     map.extent = extent;
@@ -65,7 +65,7 @@ TEST(Window, ReadsNoMoreOfTheMapThanALongWindowOnASlantMeets) {
 }
 
 TEST(Window, HasATransformThatPutsItsCornersOnTheGroundTheyShow) {
-  const MapView map = map_of(kPicture);
+  const MapView map = view_of_picture(kPicture);
   const GridPoint centre{434010.0, 4179994.0};
   const Angle heading = map.zone.true_from_grid(Angle::degrees(90.0), centre);
   const Window east = cut_window(map, {at(centre.east_m, centre.north_m), heading, 12.0, 20.0, std::nullopt}, {});
@@ -82,7 +82,7 @@ TEST(Window, HasATransformThatPutsItsCornersOnTheGroundTheyShow) {
 }
 
 TEST(Window, IsUnobservedWhereTheMapEndsAndRefusedOutsideIt) {
-  const MapView map = map_of(kPicture);
+  const MapView map = view_of_picture(kPicture);
   const Window window = cut_window(map, {at(434000.0, 4180000.0), std::nullopt, 40.0, 40.0, std::nullopt}, {});
   EXPECT_EQ(window.cells.cells.at(0, 0), kUnobserved);
   EXPECT_EQ(window.cells.cells.at(10, 10), kRoad);
@@ -92,13 +92,13 @@ TEST(Window, IsUnobservedWhereTheMapEndsAndRefusedOutsideIt) {
 TEST(Window, RefusesMoreCellsThanTheLimitWithoutMakingThem) {
   Limits limits;
   limits.cells = 100;
-  EXPECT_THROW(cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 1e6, 1e6, 0.001}, limits),
+  EXPECT_THROW(cut_window(view_of_picture(kPicture), {at(434010.0, 4179994.0), std::nullopt, 1e6, 1e6, 0.001}, limits),
                LimitExceeded);
 }
 
 TEST(Window, TellsItsGroundInJson) {
-  const auto described =
-      to_json(cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {}));
+  const auto described = to_json(
+      cut_window(view_of_picture(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {}));
   EXPECT_EQ(described["cols"], 10);
   EXPECT_EQ(described["rows"], 6);
   EXPECT_EQ(described["footprint"]["coordinates"][0].size(), 5U);
@@ -107,7 +107,8 @@ TEST(Window, TellsItsGroundInJson) {
 }
 
 TEST(Window, HasAFootprintOfTwoPartsOnBothSidesOf180Degrees) {
-  Window window = cut_window(map_of(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {});
+  Window window =
+      cut_window(view_of_picture(kPicture), {at(434010.0, 4179994.0), std::nullopt, 20.0, 12.0, std::nullopt}, {});
   window.zone = *UtmZone::from_epsg(32760);
   window.grid_pose.position = window.zone.project({-17.0, 180.0});
   const auto footprint = to_json(window)["footprint"];

@@ -22,8 +22,7 @@ namespace roadfix {
 namespace {
 
 constexpr std::size_t kStep = 64;
-constexpr int kHalf = PackedFootprint::kAlignment;
-static_assert(2 * kHalf == int{kStep});
+static_assert(2 * PackedFootprint::kAlignment == int{kStep});
 // A vector adds at most 4 * 254 * 128 to a 32-bit lane: after so many vectors the lanes are emptied.
 constexpr std::size_t kVectorsPerFlush = 8192;
 static_assert(kVectorsPerFlush * 4 * 254 * 128 < (std::size_t{1} << 31));

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include "tiles/sources/fingerprint.hpp"
@@ -67,12 +68,6 @@ class SegmentIndex {
         for (const Segment& segment : found->second) visit(segment);
       }
     }
-  }
-
-  bool any_near(const GridBox& box) const {
-    bool any = false;
-    visit(box, [&](const Segment&) { any = true; });
-    return any;
   }
 
  private:
@@ -160,12 +155,15 @@ class RoadVectors final : public CellSource {
     for (const PlanePolygon& polygon : covered_) {
       if (polygon.box().overlaps(box)) polygon.fill(block, cells.front(), result);
     }
-    if (!index_.any_near(box)) return result;
-    LineCoverage coverage(block);
-    index_.visit(box, [&](const Segment& s) { coverage.add(s.from, s.to, s.half_width_m); });
+    std::optional<LineCoverage> coverage;
+    index_.visit(box, [&](const Segment& s) {
+      if (!coverage) coverage.emplace(block);
+      coverage->add(s.from, s.to, s.half_width_m);
+    });
+    if (!coverage) return result;
     for (int row = 0; row < block.rows; ++row) {
       for (int col = 0; col < block.cols; ++col) {
-        const auto covered = static_cast<std::size_t>(coverage.covered(col, row));
+        const auto covered = static_cast<std::size_t>(coverage->covered(col, row));
         if (covered > 0 && is_observed(result.at(col, row))) result.at(col, row) = cells[covered];
       }
     }

@@ -66,6 +66,13 @@ constexpr std::string_view kElsewhere = R"(
   .....#############......
   .....#...........#......)";
 
+/// In the rectangle of the second, the cells of the first.
+void show(const CellArray& from, CellArray& in, int first_col, int first_row, int cols, int rows) {
+  for (int row = first_row; row < first_row + rows; ++row) {
+    for (int col = first_col; col < first_col + cols; ++col) in.at(col, row) = from.at(col, row);
+  }
+}
+
 class FrameParts : public ::testing::Test {
  protected:
   RoadGrid map_{{5.0, {120'000, -1'280'000}, kSide, kSide}, from_ascii(kTown)};
@@ -78,47 +85,31 @@ class FrameParts : public ::testing::Test {
     const char* part = contradicting_part(testing::view_of(map_), FeatureMap::centred(frame_, 5.0), pose);
     return part ? part : "none";
   }
-};
 
-/// In the rectangle of the second, the cells of the first.
-void show(const CellArray& from, CellArray& in, int first_col, int first_row, int cols, int rows) {
-  for (int row = first_row; row < first_row + rows; ++row) {
-    for (int col = first_col; col < first_col + cols; ++col) in.at(col, row) = from.at(col, row);
+  /// Likewise, of a frame of the town but for a rectangle.
+  std::string contradicting_with_elsewhere_at(int first_col, int first_row, int cols, int rows) {
+    frame_ = from_ascii(kTown);
+    show(elsewhere_, frame_, first_col, first_row, cols, rows);
+    return contradicting();
   }
-}
+};
 
 TEST_F(FrameParts, AllFitWhereTheFrameShowsTheGround) { EXPECT_EQ(contradicting(), "none"); }
 
 TEST_F(FrameParts, ContradictWhereAHalfShowsOtherGround) {
   constexpr int kHalf = kSide / 2;
-  const CellArray town = frame_;
-  show(elsewhere_, frame_, 0, 0, kHalf, kSide);
-  EXPECT_EQ(contradicting(), "left half");
-  frame_ = town;
-  show(elsewhere_, frame_, kHalf, 0, kHalf, kSide);
-  EXPECT_EQ(contradicting(), "right half");
-  frame_ = town;
-  show(elsewhere_, frame_, 0, 0, kSide, kHalf);
-  EXPECT_EQ(contradicting(), "upper half");
-  frame_ = town;
-  show(elsewhere_, frame_, 0, kHalf, kSide, kHalf);
-  EXPECT_EQ(contradicting(), "lower half");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, 0, kHalf, kSide), "left half");
+  EXPECT_EQ(contradicting_with_elsewhere_at(kHalf, 0, kHalf, kSide), "right half");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, 0, kSide, kHalf), "upper half");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, kHalf, kSide, kHalf), "lower half");
 }
 
 TEST_F(FrameParts, ContradictWhereAQuarterShowsOtherGround) {
   constexpr int kQuarter = kSide / 4;
-  const CellArray town = frame_;
-  show(elsewhere_, frame_, 0, 0, kQuarter, kSide);
-  EXPECT_EQ(contradicting(), "left quarter");
-  frame_ = town;
-  show(elsewhere_, frame_, kSide - kQuarter, 0, kQuarter, kSide);
-  EXPECT_EQ(contradicting(), "right quarter");
-  frame_ = town;
-  show(elsewhere_, frame_, 0, 0, kSide, kQuarter);
-  EXPECT_EQ(contradicting(), "upper quarter");
-  frame_ = town;
-  show(elsewhere_, frame_, 0, kSide - kQuarter, kSide, kQuarter);
-  EXPECT_EQ(contradicting(), "lower quarter");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, 0, kQuarter, kSide), "left quarter");
+  EXPECT_EQ(contradicting_with_elsewhere_at(kSide - kQuarter, 0, kQuarter, kSide), "right quarter");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, 0, kSide, kQuarter), "upper quarter");
+  EXPECT_EQ(contradicting_with_elsewhere_at(0, kSide - kQuarter, kSide, kQuarter), "lower quarter");
 }
 
 TEST_F(FrameParts, AreThoseOfTheCellsThatWereObserved) {

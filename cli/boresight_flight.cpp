@@ -102,9 +102,12 @@ Flight look_for(const std::filesystem::path& csv, const MapView& map, const Road
   require_cameras(frames);
   const std::filesystem::path folder = csv.parent_path();
   const Looking looking(folder, map, detector, options);
+  const auto tell = [&](std::size_t done) {
+    if (progress) progress(static_cast<std::int64_t>(done), static_cast<std::int64_t>(frames.size()));
+  };
   Flight flight;
   for (std::size_t i = 0; i < frames.size(); ++i) {
-    if (progress) progress(static_cast<std::int64_t>(i), static_cast<std::int64_t>(frames.size()));
+    tell(i);
     try {
       FlightFrame frame = looking.look_for(frames[i]);
       if (frame.sighting) frame.sighting->velocity_m_s = velocity_at(frames, i, map.zone);
@@ -116,6 +119,7 @@ Flight look_for(const std::filesystem::path& csv, const MapView& map, const Road
       flight.left_out.push_back({frames[i].file, fmt::format("{} [{}]", error.what(), error.code())});
     }
   }
+  tell(frames.size());
   flight.registration_sigma_m = mean_registration_sigma_m(flight.frames, map);
   return flight;
 }

@@ -106,8 +106,8 @@ TEST_F(BoresightCommand, GoesOnWithoutFramesThatAreMissingOrBeyondTheMap) {
   const ProgramResult result = roadfix("boresight " + path("town.gpkg") + " " + table);
   EXPECT_EQ(result.code, 1) << "for the one that is missing";
   EXPECT_THAT(result.out, AllOf(HasSubstr(" of 10 frames found"), HasSubstr("\n  pitch "), HasSubstr("--camera-yaw ")));
-  EXPECT_THAT(result.err,
-              AllOf(HasSubstr("absent.jpg"), HasSubstr("[pictures-left-out]"), Not(HasSubstr("beyond.jpg"))));
+  EXPECT_THAT(result.err, AllOf(HasSubstr("locating 100.0 %"), HasSubstr("absent.jpg"),
+                                HasSubstr("[pictures-left-out]"), Not(HasSubstr("beyond.jpg"))));
 }
 
 TEST_F(BoresightCommand, RefusesAFlightOfWhichTooLittleIsFoundAndFramesOfNoCamera) {

@@ -145,7 +145,7 @@ void run_fly(const FlyOptions& options) {
   const fly::Events events{plan.kidnapping, plan.outage};
   std::vector<std::pair<std::string, fly::Summary>> summaries;
   for (const auto& result : results) summaries.emplace_back(result.filter, fly::summary_of(result.runs, events));
-  std::FILE* out = printed_beside({options.json_file, options.csv_file, options.geojson_file});
+  std::FILE* out = printed_beside({options.json_file, options.csv_file, options.geojson_file, options.pictures.film});
   fmt::print(out, "{}\nseed {}, {:.1f} x {:.1f} km of map\n{}", ground.what, options.campaign.seed,
              map.extent.width_m() / 1e3, map.extent.height_m() / 1e3, fly::to_table(summaries, events));
   write_files(options, results, map.zone);
@@ -153,6 +153,7 @@ void run_fly(const FlyOptions& options) {
     write_file(options.json_file, json_text(document(options, map, ground, results, events), 1) + '\n');
   }
   pictures.finish();
+  if (!options.pictures.film.empty()) write_file(options.pictures.film, pictures.gif());
 }
 
 }  // namespace

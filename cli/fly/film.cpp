@@ -1,17 +1,14 @@
 #include "cli/fly/film.hpp"
 
-#include <fmt/format.h>
 #include <gif_lib.h>
 
 #include <array>
 #include <cassert>
-#include <fstream>
 #include <memory>
+#include <new>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
-
-#include "core/units/error.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -56,19 +53,11 @@ cv::Mat indexed(const cv::Mat& picture) {
   return indices;
 }
 
-[[noreturn]] void fail(const std::string& file, int code) {
-  const char* why = GifErrorString(code);
-  throw IoFailure("result-unwritable",
-                  fmt::format("{} cannot be written: {}", file, why != nullptr ? why : "unknown reason"));
-}
-
-/// Closes what it writes; what could not be finished is an error of its own.
+/// Into memory, where only memory can be wanting.
 class Writer {
  public:
-  explicit Writer(const std::string& file) : file_(file), out_(file, std::ios::binary) {
-    int code = E_GIF_ERR_OPEN_FAILED;
-    if (out_) gif_ = EGifOpen(this, &Writer::put, &code);
-    if (gif_ == nullptr) fail(file_, code);
+  Writer() : gif_(EGifOpen(this, &Writer::put, nullptr)) {
+    if (gif_ == nullptr) throw std::bad_alloc();
     EGifSetGifVersion(gif_, true);
   }
   ~Writer() {
@@ -100,28 +89,24 @@ class Writer {
     for (int y = 0; y < part.rows; ++y) require(EGifPutLine(gif_, part.ptr(y), part.cols));
   }
 
-  void finish() {
-    int code = 0;
-    const bool closed = EGifCloseFile(std::exchange(gif_, nullptr), &code) == GIF_OK;
-    out_.close();
-    if (!closed || !out_) fail(file_, closed ? E_GIF_ERR_WRITE_FAILED : code);
+  std::string finish() {
+    require(EGifCloseFile(std::exchange(gif_, nullptr), nullptr));
+    return std::move(bytes_);
   }
 
  private:
-  /// A file that giflib opens itself nobody else may read.
   static int put(GifFileType* gif, const GifByteType* bytes, int count) {
-    auto& out = static_cast<Writer*>(gif->UserData)->out_;
-    out.write(reinterpret_cast<const char*>(bytes), count);
-    return out ? count : 0;
+    static_cast<Writer*>(gif->UserData)
+        ->bytes_.append(reinterpret_cast<const char*>(bytes), static_cast<std::size_t>(count));
+    return count;
   }
 
-  void require(int result) const {
-    if (result != GIF_OK) fail(file_, gif_->Error);
+  static void require(int result) {
+    if (result != GIF_OK) throw std::bad_alloc();
   }
 
-  std::string file_;
-  std::ofstream out_;
-  GifFileType* gif_ = nullptr;
+  std::string bytes_;
+  GifFileType* gif_;
 };
 
 cv::Rect changed_part(const cv::Mat& before, const cv::Mat& frame) {
@@ -184,10 +169,10 @@ void Film::append_right(const Film& other) {
   *this = std::move(both);
 }
 
-void Film::write(const std::string& file, int frames_per_second) const {
+std::string Film::gif(int frames_per_second) const {
   assert(size() > 0);
   constexpr int kLastHundredths = 200;
-  Writer writer(file);
+  Writer writer;
   writer.start(last_.size());
   Player player(*this);
   cv::Mat before;
@@ -198,7 +183,7 @@ void Film::write(const std::string& file, int frames_per_second) const {
                is_last ? kLastHundredths : 100 / frames_per_second);
     before = frame;
   }
-  writer.finish();
+  return writer.finish();
 }
 
 }  // namespace roadfix::fly

@@ -15,8 +15,8 @@ class Film {
   std::size_t size() const { return changes_.size(); }
   /// Frame i of this film beside frame i of the other; both equally long and high.
   void append_right(const Film& other);
-  /// Repeats for ever. Throws IoFailure "result-unwritable".
-  void write(const std::string& file, int frames_per_second) const;
+  /// The bytes of the file. It repeats for ever.
+  std::string gif(int frames_per_second) const;
 
  private:
   class Player;

@@ -51,15 +51,16 @@ void FlightPictures::show(const std::string& filter, const Record& record, const
   if (chosen(record.sequence)) write(reel, reel.last, record.sequence);
 }
 
-void FlightPictures::finish() {
-  if (reels_.empty()) return;
+void FlightPictures::finish() const {
   for (const Reel& reel : reels_) {
     if (!chosen(reel.last_step)) write(reel, reel.last, reel.last_step);
   }
-  if (options_.film.empty()) return;
+}
+
+std::string FlightPictures::gif() {
   Film& film = reels_.front().film;
   for (std::size_t i = 1; i < reels_.size(); ++i) film.append_right(reels_[i].film);
-  film.write(options_.film, options_.frames_per_second);
+  return film.gif(options_.frames_per_second);
 }
 
 FlightPictures::Reel& FlightPictures::reel_of(const std::string& filter) {

@@ -25,8 +25,10 @@ class FlightPictures {
 
   /// Steps of one filter in their order. Not thread-safe.
   void show(const std::string& filter, const Record& record, const Localizer& localizer);
-  /// Writes each filter's last step and the film.
-  void finish();
+  /// Writes each filter's last step.
+  void finish() const;
+  /// Of all steps, the filters side by side; to be asked for once, and only if there is to be one.
+  std::string gif();
 
  private:
   struct Reel {

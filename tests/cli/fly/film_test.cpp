@@ -4,18 +4,16 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <fstream>
 #include <opencv2/core.hpp>
 #include <string>
 #include <vector>
 
-#include "tests/support/code_of.hpp"
 #include "tests/support/peak_memory.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::fly {
 namespace {
-
-using testing::code_of;
 
 /// Black and white pictures, most of whose pixels change from one to the next.
 std::vector<cv::Mat> flickering(int seed) {
@@ -62,7 +60,7 @@ TEST(Films, ShowEveryPictureOfTwoSideBySide) {
     other.add(theirs[i]);
   }
   film.append_right(other);
-  film.write((folder / "film.gif").string(), 8);
+  std::ofstream(folder / "film.gif", std::ios::binary) << film.gif(8);
   const std::vector<cv::Mat> pictures = shown((folder / "film.gif").string());
   ASSERT_EQ(pictures.size(), ours.size());
   for (std::size_t i = 0; i < ours.size(); ++i) {
@@ -82,12 +80,6 @@ TEST(Films, KeepLittleOfWhatDoesNotChange) {
   const long before_kib = testing::peak_memory_kib();
   for (int i = 0; i < 60; ++i) film.add(noise);
   EXPECT_LT(testing::peak_memory_kib() - before_kib, 10 << 10) << "48 MB in full";
-}
-
-TEST(Films, ThatCannotBeWrittenSaySo) {
-  Film film;
-  film.add(cv::Mat(20, 20, CV_8UC3, cv::Scalar(10, 200, 30)));
-  EXPECT_EQ(code_of([&] { film.write("/nowhere/at/all.gif", 8); }), "result-unwritable");
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ routes::Route route_of(const MapView& map, const std::vector<GridPoint>& from_so
   return route;
 }
 
-RouteSurveyOptions options() {
+RouteSurveyOptions route_options() {
   RouteSurveyOptions options;
   options.query = query_of_a_third();
   options.every_m = 400.0;
@@ -45,7 +45,7 @@ using enum PlaceKind;
 
 TEST(RouteSurvey, TellsWhereAFlightHasFixesAndHowLongItGoesWithoutOne) {
   const MapView map = town_fields_and_unknown_ground();
-  RouteSurveyOptions two_at_a_time = options();
+  RouteSurveyOptions two_at_a_time = route_options();
   two_at_a_time.threads = 2;
   std::int64_t told = 0;
   two_at_a_time.progress = counted(told, 8);
@@ -66,7 +66,7 @@ TEST(RouteSurvey, TellsWhereAFlightHasFixesAndHowLongItGoesWithoutOne) {
 
 TEST(RouteSurvey, PiecesAreOfOneLengthAndFollowTheTurnsOfTheRoute) {
   const MapView map = town_fields_and_unknown_ground();
-  RouteSurveyOptions halves = options();
+  RouteSurveyOptions halves = route_options();
   halves.every_m = 500.0;
   const routes::Route route = route_of(map, {{100, 100}, {100, 400}, {800, 400}});
   const RouteSurvey found = survey_route(map, route, halves);
@@ -88,7 +88,7 @@ TEST(RouteSurvey, PiecesAreOfOneLengthAndFollowTheTurnsOfTheRoute) {
 
 TEST(RouteSurvey, AsksAtFewerPlacesThatStandForLongerPiecesWhereItWouldBeTooMany) {
   const MapView map = town_fields_and_unknown_ground();
-  RouteSurveyOptions few = options();
+  RouteSurveyOptions few = route_options();
   few.every_m = 1.0;
   few.max_places = 2;
   const RouteSurvey found = survey_route(map, route_of(map, {{0, 400}, {800, 400}}), few);
@@ -99,7 +99,7 @@ TEST(RouteSurvey, AsksAtFewerPlacesThatStandForLongerPiecesWhereItWouldBeTooMany
 TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
   const MapView map = town_fields_and_unknown_ground();
   const routes::Route route = route_of(map, {{0, 400}, {1600, 400}});
-  RouteSurveyOptions rest = options();
+  RouteSurveyOptions rest = route_options();
   rest.from_m = 400.0;
   const RouteSurvey found = survey_route(map, route, rest);
   EXPECT_EQ(kinds_of(found), (std::vector{kBare, kUnknown, kUnknown}));
@@ -117,7 +117,7 @@ TEST(RouteSurvey, GoesOnWhereAnotherOneEnded) {
 TEST(RouteSurvey, BeginsAnywhereBeforeTheEndOfTheRouteAndNowhereBeyond) {
   const MapView map = town_fields_and_unknown_ground();
   const routes::Route route = route_of(map, {{0, 400}, {1600, 400}});
-  RouteSurveyOptions rest = options();
+  RouteSurveyOptions rest = route_options();
   for (const double from_m : {1300.0, 1500.0, 1599.0}) {
     rest.from_m = from_m;
     const RouteSurvey last = survey_route(map, route, rest);
@@ -133,7 +133,7 @@ TEST(RouteSurvey, BeginsAnywhereBeforeTheEndOfTheRouteAndNowhereBeyond) {
 
 TEST(RouteSurvey, TellsPlacesAlongTheWholeRouteWhereverItBegan) {
   const MapView map = town_fields_and_unknown_ground();
-  RouteSurveyOptions rest = options();
+  RouteSurveyOptions rest = route_options();
   rest.from_m = 800.0;
   const RouteSurvey found = survey_route(map, route_of(map, {{1200, 400}, {0, 400}}), rest);
   EXPECT_EQ(kinds_of(found), std::vector{kDistinct});
@@ -143,7 +143,7 @@ TEST(RouteSurvey, TellsPlacesAlongTheWholeRouteWhereverItBegan) {
 
 TEST(RouteSurvey, EndsAtTheDeadlineWithWhatItHas) {
   const MapView map = town_fields_and_unknown_ground();
-  RouteSurveyOptions late = options();
+  RouteSurveyOptions late = route_options();
   late.query.fix.search.deadline = Deadline({}, std::chrono::steady_clock::now());
   const RouteSurvey nothing = survey_route(map, route_of(map, {{0, 400}, {1600, 400}}), late);
   EXPECT_TRUE(nothing.pieces.empty());
@@ -155,7 +155,7 @@ TEST(RouteSurvey, EndsAtTheDeadlineWithWhatItHas) {
 
 TEST(RouteSurvey, HasNoFirstFixWhereNoneIsToBeExpected) {
   const MapView map = town_fields_and_unknown_ground();
-  const RouteSurvey found = survey_route(map, route_of(map, {{500, 400}, {700, 400}}), options());
+  const RouteSurvey found = survey_route(map, route_of(map, {{500, 400}, {700, 400}}), route_options());
   EXPECT_EQ(kinds_of(found), std::vector{kBare});
   EXPECT_FALSE(found.first_fix_m());
   EXPECT_EQ(found.longest_without_fix().count(), 1);
@@ -171,7 +171,7 @@ routes::Route climb(const MapView& map, double from_agl_m, double to_agl_m, doub
 
 /// Of a camera whose footprint is twice as wide as it is high.
 RouteSurveyOptions options_of_a_camera() {
-  RouteSurveyOptions camera = options();
+  RouteSurveyOptions camera = route_options();
   camera.query.footprint_m = 0.0;  // not read
   camera.camera = DownwardCamera{Angle::degrees(90.0), 1.0};
   return camera;
@@ -187,7 +187,7 @@ TEST(RouteSurvey, AsksOfEachPlaceForTheGroundThatACameraShowsFromItsHeight) {
     const RoutePiece& piece = found.pieces[static_cast<std::size_t>(i)];
     EXPECT_NEAR(piece.agl_m.value(), 45.0 + 50.0 * i, 1e-6);
     EXPECT_NEAR(piece.footprint_m.value(), 90.0 + 100.0 * i, 1e-6);
-    LocalizabilityQuery same = options().query;
+    LocalizabilityQuery same = route_options().query;
     same.footprint_m = *piece.footprint_m;
     same.position = map.zone.unproject({kSouthWest.east_m + 200.0, kSouthWest.north_m + 250.0 + 100.0 * i});
     EXPECT_EQ(piece.kind, kind_of(localizability(map, same)));
@@ -197,7 +197,7 @@ TEST(RouteSurvey, AsksOfEachPlaceForTheGroundThatACameraShowsFromItsHeight) {
   EXPECT_NE(found.pieces[0].kind, kDistinct) << "from so low it shows too little";
   EXPECT_NEAR(found.range(&RoutePiece::agl_m)->least_m, 45.0, 1e-6);
   EXPECT_NEAR(found.range(&RoutePiece::footprint_m)->most_m, 390.0, 1e-6);
-  EXPECT_FALSE(survey_route(map, climb(map, 20.0, 220.0), options()).range(&RoutePiece::agl_m));
+  EXPECT_FALSE(survey_route(map, climb(map, 20.0, 220.0), route_options()).range(&RoutePiece::agl_m));
 }
 
 TEST(RouteSurvey, TakesFootprintsThatAreTooSmallForBareAndThoseTooLargeForUnknown) {
@@ -219,7 +219,7 @@ TEST(RouteSurvey, OfACameraCutsPiecesOfHalfItsMeanFootprint) {
   EXPECT_NEAR(survey_route(map, climb(map, 100.0, 300.0), camera).piece_m, 200.0, 1e-6);
   // Of 0 to 100 m those from 10 m on show the 20 m and more that can be asked of: 110 m in the mean.
   EXPECT_NEAR(survey_route(map, climb(map, 0.0, 100.0, 5500.0), camera).piece_m, 55.0, 0.1);
-  RouteSurveyOptions fixed = options();
+  RouteSurveyOptions fixed = route_options();
   fixed.every_m.reset();
   EXPECT_NEAR(survey_route(map, climb(map, 0.0, 0.0), fixed).piece_m, 200.0, 1e-6) << "or of half a footprint";
 }
@@ -235,7 +235,9 @@ TEST(RouteSurvey, OfACameraNeedsHeightsThatCanBecomeOnesAboveGround) {
 
 TEST(RouteSurvey, RefusesRoutesOfAnotherPlaceAndThoseThatLeadNowhere) {
   const MapView map = town_fields_and_unknown_ground();
-  const auto code = [&](const routes::Route& route) { return code_of([&] { survey_route(map, route, options()); }); };
+  const auto code = [&](const routes::Route& route) {
+    return code_of([&] { survey_route(map, route, route_options()); });
+  };
   EXPECT_EQ(code(route_of(map, {{0, 5000}, {1200, 5000}})), "route-outside-map");
   const routes::Route elsewhere{{{{10.0, -120.0}, {}, {}}, {{10.0, -119.0}, {}, {}}}, {}, {}};
   EXPECT_EQ(code(elsewhere), "route-outside-map") << "where the zone is not defined";

@@ -1,16 +1,19 @@
-// Tracks of a vehicle that knows its height above the sea, over ground that is not level.
+// Tracks of a vehicle that knows its height above the sea, over ground that is not level, or is wrong about its height.
 #include <gtest/gtest.h>
 
 #include <memory>
 
 #include "core/grid/relief.hpp"
 #include "tests/core/locate/track_fixture.hpp"
+#include "tests/support/code_of.hpp"
 #include "tests/support/sloping_ground.hpp"
 
 namespace roadfix {
 namespace {
 
+using testing::code_of;
 using testing::Flight;
+using testing::Track;
 
 class TrackFromAltitude : public testing::Track {
  protected:
@@ -103,6 +106,34 @@ TEST_F(TrackFromAltitude, TellsTheHeightAboveTheGroundThatIsBelievedToBeBelow) {
   step.time_us = 1;
   advance(tracker, step);
   EXPECT_NEAR(tracker.agl_m(state_, kAboveSeaM), true_agl_m(start_), 1.0) << "of the particles";
+}
+
+TEST_F(Track, LearnsAnErrorOfTheAltitudeThatItIsToldToExpect) {
+  const auto end_of = [&](double range) {
+    TrackSettings rough = settings();
+    rough.vehicle.scale_range = range;
+    const Tracker tracker(view_, rough);
+    Flight flight(map_, start_, 3);
+    state_ = {};
+    TrackEstimate last;
+    for (int i = 0; i < 20; ++i) {
+      StepInput step = flight.step();
+      step.features->cell_m /= 1.12;  // the ground is larger than the vehicle thinks
+      last = advance(tracker, step);
+      EXPECT_TRUE(!last.converged() || error_m(last, flight.pose()) < 20.0) << "step " << i;
+    }
+    return last;
+  };
+  const TrackEstimate told = end_of(0.2);
+  EXPECT_TRUE(told.converged());
+  EXPECT_NEAR(told.clusters[0].scale, 1.12, 0.02) << "two cells at the edge of a footprint of 180";
+  EXPECT_LT(told.clusters[0].scale_sigma, 0.02);
+  const TrackEstimate untold = end_of(0.0);
+  EXPECT_FALSE(untold.converged());
+  EXPECT_EQ(untold.clusters[0].scale, 1.0);
+  TrackSettings impossible = settings();
+  impossible.vehicle.scale_range = 0.5;
+  EXPECT_EQ(code_of([&] { Tracker(view_, impossible); }), "parameter-out-of-range");
 }
 
 }  // namespace

@@ -103,6 +103,7 @@ Fix locate_levelled(const std::optional<Altitude>& altitude, const MapView& map,
   const Altitude there{altitude->above_sea_m, agl_at(map, *altitude, place.position)};
   Fix again = locate_frames(there, map, levelled_frames(map, frames, *altitude, place), prior, options);
   again.search_time += fix.search_time;
+  fix.search_time = again.search_time;
   if (again.complete && !again.modes.empty() && is_found_again(on_grid(again.modes.front().pose, map.zone), place)) {
     return again;
   }

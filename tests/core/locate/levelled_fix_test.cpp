@@ -72,6 +72,22 @@ TEST_F(Slopes, AreNoneWhereNothingShowsThem) {
   EXPECT_EQ(refusal_from(60.0), "terrain-contradicts") << "the place is not found again";
 }
 
+TEST_F(Slopes, TakeTheTimeOfBothSearchesAlsoWhereThePlaceIsNotFoundAgain) {
+  const GridPose truth = pose_within(view_.extent, 350.0, random_);
+  const FeatureMap level = observed_at(map_, truth, 180, 180, 2.0, {0.1, 0.1}, random_);
+  const Altitude altitude{std::nullopt, 60.0};
+  const auto slow = 2 * locate_from(altitude, view_, level, {}, {}).search_time;
+  std::int64_t furthest = 0;
+  FixOptions options;
+  options.search.progress = [&](std::int64_t done, std::int64_t) {
+    if (done < furthest) std::this_thread::sleep_for(slow);  // the second search begins
+    furthest = done;
+  };
+  const Fix fix = locate_levelled(altitude, view_, level, {}, options);
+  EXPECT_EQ(fix.reason, "terrain-contradicts");
+  EXPECT_GE(fix.search_time, slow);
+}
+
 TEST_F(Slopes, AreNoneWhereTheTimeIsOverBeforeThePlaceIsFoundAgain) {
   const GridPose truth = pose_within(view_.extent, 350.0, random_);
   const FeatureMap level = observed_at(map_, truth, 180, 180, 2.0, {0.1, 0.1}, random_);

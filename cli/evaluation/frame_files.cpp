@@ -1,7 +1,5 @@
 #include "cli/evaluation/frame_files.hpp"
 
-#include <fmt/format.h>
-
 #include <string>
 #include <vector>
 
@@ -14,7 +12,8 @@
 namespace roadfix::evaluation {
 
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv) {
-  return parse_frames_csv(read_named_file(csv));
+  const std::string text = read_named_file(csv);
+  return said_of(csv.string(), [&] { return parse_frames_csv(text); });
 }
 
 FramePixels read_frame(const std::filesystem::path& folder, const FrameTruth& frame, Border border) {

@@ -11,7 +11,7 @@
 
 namespace roadfix::evaluation {
 
-/// Throws NotFound "file-not-found", and as parse_frames_csv.
+/// Throws NotFound "file-not-found", and what parse_frames_csv() does with the file's name.
 std::vector<FrameTruth> read_frames_csv(const std::filesystem::path& csv);
 
 /// The picture alone. `folder` is that of the CSV. Throws NotFound "file-not-found", and what decode_frame() and

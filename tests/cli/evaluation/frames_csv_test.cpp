@@ -2,13 +2,17 @@
 
 #include <gmock/gmock.h>
 
+#include <fstream>
 #include <variant>
 
+#include "cli/evaluation/frame_files.hpp"
 #include "core/units/error.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace roadfix::evaluation {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -51,6 +55,13 @@ TEST(FramesCsv, OfAnotherSpreadsheetThanCanBeReadIsRefusedForWhatItIs) {
   told("file,lat,lon,heading_deg,gsd_m\n\"a, b\",1,1,0,1\n", "line 2: it has quotes");
   told("\"file\",\"lat\",\"lon\",\"heading_deg\",\"gsd_m\"\n", "line 1: it has quotes");
   told("file,lat,lon,heading_deg,gsd_m\na,1,5,1,5,0,0,5\n", "it has 8 fields, and the header 5");
+}
+
+TEST(FramesCsv, IsNamedWhereItsFileCannotBeRead) {
+  const testing::TemporaryFolder folder;
+  std::ofstream(folder / "flight.csv") << "file,lat,lon,heading_deg,gsd_m\na,north,1,0,1\n";
+  EXPECT_THAT([&] { read_frames_csv(folder / "flight.csv"); },
+              ThrowsMessage<InvalidInput>(AllOf(HasSubstr("flight.csv: "), HasSubstr("line 2: lat is 'north'"))));
 }
 
 TEST(FramesCsv, PassesOverTheEmptyRowsOfSpreadsheets) {

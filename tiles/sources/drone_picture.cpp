@@ -82,6 +82,7 @@ std::optional<double> time_of(const Tags& exif) {
   const auto parts = numbers(exif, "EXIF_DateTimeOriginal");
   const auto possible = [](double part) { return part >= 0.0 && part < 1e4; };
   if (parts.size() != 6 || !std::ranges::all_of(parts, possible)) return std::nullopt;
+  if (parts[1] > 12.0 || parts[2] > 31.0) return std::nullopt;  // chrono would keep their last byte
   namespace chrono = std::chrono;
   const chrono::year_month_day date(chrono::year(static_cast<int>(parts[0])),
                                     chrono::month(static_cast<unsigned>(parts[1])),

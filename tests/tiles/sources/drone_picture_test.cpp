@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <fstream>
 #include <random>
 
@@ -135,6 +134,8 @@ TEST(DronePicture, CountsTimeToTheFractionOfASecond) {
               near_to(1675940710.25));
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:31 11:05:10"}}).time_s);
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:-9 11:05:10"}}).time_s);
+  EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:258:09 11:05:10"}}).time_s);
+  EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:265 11:05:10"}}).time_s);
   EXPECT_FALSE(of_exif({{"EXIF_DateTimeOriginal", "2023:02:09 24:05:10"}}).time_s);
 }
 

@@ -52,7 +52,6 @@ std::size_t end_of_span(std::span<const Cell> row, std::size_t first) {
 
 PackedFootprint::PackedFootprint(const FeatureMap& north_up) {
   const CellArray& cells = north_up.cells;
-  assert(cells.cols() <= kMaxCols);
   const int nadir_col = static_cast<int>(std::floor(north_up.nadir.col));
   const int nadir_row = static_cast<int>(std::floor(north_up.nadir.row));
   const std::size_t blocks_of_row = (static_cast<std::size_t>(cells.cols()) + kAlignment - 1) / kAlignment;

@@ -17,7 +17,6 @@ namespace roadfix {
 class PackedFootprint {
  public:
   static constexpr int kAlignment = 32;
-  static constexpr int kMaxCols = 65536;
 
   struct Span {
     int first_col = 0;  ///< relative to the nadir cell
@@ -27,7 +26,6 @@ class PackedFootprint {
   };
 
   /// `north_up` comes from rotated(): its nadir lies within the cell that counts as the centre.
-  /// At most kMaxCols columns (the kernel's 32-bit sums).
   explicit PackedFootprint(const FeatureMap& north_up);
 
   std::span<const Span> spans() const { return spans_; }

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <string_view>
 
 #include "cli/ingest_report.hpp"
 #include "core/geodesy/utm.hpp"
 #include "core/units/error.hpp"
+#include "core/units/text.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/store/map_reader.hpp"
@@ -20,11 +22,8 @@ constexpr double kCellM = 2.0;  // of a new map
 constexpr double kFalseEastingM = 500e3;
 
 UtmZone parsed_zone(const std::string& text) {
-  std::string digits = text;
-  if (digits.starts_with("EPSG:")) digits.erase(0, 5);
-  const bool number =
-      !digits.empty() && digits.size() <= 5 && std::ranges::all_of(digits, [](char c) { return c >= '0' && c <= '9'; });
-  const std::optional<UtmZone> zone = number ? UtmZone::from_epsg(std::stoi(digits)) : std::nullopt;
+  const auto epsg = as_number<int>(std::string_view(text).substr(text.starts_with("EPSG:") ? 5 : 0));
+  const std::optional<UtmZone> zone = epsg ? UtmZone::from_epsg(*epsg) : std::nullopt;
   if (!zone) {
     throw InvalidInput("zone-unknown",
                        fmt::format("--zone {}: write the EPSG code of a UTM zone on WGS 84, EPSG:32601 to "
@@ -50,7 +49,7 @@ double stretch(double from_meridian_m) {
 
 bool is_about_place(const std::string& code) { return code == "crs-not-transformable" || code == "source-outside-map"; }
 
-/// Throws in place of `error` where it is the zone that does not fit.
+/// Throws where it is the zone that does not fit.
 void refuse_another_zone(const SourceRequest& request, const MapSettings& settings) {
   const LatLon centre = centre_of_source(request);
   const UtmZone home = UtmZone::containing(centre);

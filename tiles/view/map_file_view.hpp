@@ -10,8 +10,8 @@
 
 namespace roadfix {
 
-/// `name` is what the map is called in answers. The view keeps the reader alive; its registration error is the largest
-/// of the sources in force. It keeps up to `search_cache_bytes` of what searches build.
+/// `name` is what the map is called in answers. The view keeps the reader alive. Its registration error is the largest
+/// of the sources in force within 500 m of the place. It keeps up to `search_cache_bytes` of what searches build.
 MapView view_of(std::shared_ptr<const MapReader> reader, std::string name, std::size_t search_cache_bytes = 0);
 
 /// Of the map in a file, which gives it its name. Throws as MapReader.

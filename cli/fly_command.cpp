@@ -131,6 +131,7 @@ void run_fly(const FlyOptions& options) {
   require_apart({options.json_file, options.csv_file, options.geojson_file, options.pictures.film},
                 {options.map, options.over, options.course});
   require_writable({options.json_file, options.csv_file, options.geojson_file, options.pictures.film});
+  require_folder(options.pictures.folder);
   const MapView map = map_of(options);
   const Ground ground = ground_of(options, map);
   const fly::FlightPlan plan = plan_of(options, map, ground);

@@ -62,8 +62,11 @@ void draw_picture(const Method& method, const Query& query, const Answer& answer
   if (picture.empty()) return;  // nothing to see, say of keypoints in a feature map
   std::error_code failed;
   std::filesystem::create_directories(file.parent_path(), failed);
-  if (failed || !cv::imwrite(file.string(), picture))
-    throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file.string()));
+  if (failed || !cv::imwrite(file.string(), picture)) {
+    throw IoFailure("result-unwritable", fmt::format("{} cannot be written: check that its folder may be written to, "
+                                                     "and is not full",
+                                                     file.string()));
+  }
 }
 
 Answer answer_of(const Method& method, const Query& query) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
@@ -28,13 +27,6 @@ FlightPictures::FlightPictures(const MapView& map, const Orthoimage* imagery, co
   if (options_.folder.empty() && options_.film.empty()) return;
   if (options_.steps.empty()) options_.steps = {0, 1, 5, 20, 80};
   backdrop_ = backdrop_of(map, imagery, options_.longest_px);
-  if (options_.folder.empty()) return;
-  std::error_code failed;
-  std::filesystem::create_directories(options_.folder, failed);
-  if (failed) {
-    throw IoFailure("result-unwritable",
-                    fmt::format("the folder {} cannot be made: {}", options_.folder, failed.message()));
-  }
 }
 
 void FlightPictures::show(const std::string& filter, const Record& record, const Localizer& localizer) {
@@ -78,7 +70,9 @@ void FlightPictures::write(const Reel& reel, const cv::Mat& picture, std::int64_
   if (options_.folder.empty()) return;
   const std::string file = fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step);
   if (!cv::imwrite(file, picture)) {
-    throw IoFailure("result-unwritable", fmt::format("{} cannot be written", file));
+    throw IoFailure("result-unwritable", fmt::format("{} cannot be written: check that its folder may be written to, "
+                                                     "and is not full",
+                                                     file));
   }
 }
 

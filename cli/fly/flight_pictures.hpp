@@ -10,7 +10,7 @@
 namespace roadfix::fly {
 
 struct FlightPictureOptions {
-  std::string folder;      ///< of the pictures; empty = none
+  std::string folder;      ///< of the pictures, is there; empty = none
   std::vector<int> steps;  ///< empty = 0, 1, 5, 20, 80
   std::string film;        ///< file; empty = none
   int frames_per_second = 8;
@@ -19,11 +19,11 @@ struct FlightPictureOptions {
 
 class FlightPictures {
  public:
-  /// `imagery` may be null; all must outlive it. Throws IoFailure "result-unwritable" for the folder.
+  /// `imagery` may be null; all must outlive it.
   FlightPictures(const MapView& map, const Orthoimage* imagery, const Footprint& footprint,
                  FlightPictureOptions options);
 
-  /// Steps of one filter in their order. Not thread-safe.
+  /// Steps of one filter in their order. Not thread-safe. Throws IoFailure "result-unwritable", as finish() does.
   void show(const std::string& filter, const Record& record, const Localizer& localizer);
   /// Writes each filter's last step.
   void finish() const;

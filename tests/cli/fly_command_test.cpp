@@ -225,6 +225,9 @@ TEST_F(FlyCommand, SaysWhatIsWrongWithItsArguments) {
     EXPECT_THAT(lost.err, HasSubstr("[result-unwritable]"));
     EXPECT_THAT(lost.err, Not(HasSubstr("flying"))) << "said before the flights, not after them";
   }
+  EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --pictures " + map() + "/beside").err,
+              HasSubstr("[result-unwritable]"));
+  EXPECT_THAT(roadfix("fly " + map() + " --footprint-m 200 --pictures -").err, HasSubstr("[target-is-dash]"));
   const std::string over_service = "fly " + map() + " --footprint-m 200 --steps 1 --vehicles 2 --map town --server ";
   EXPECT_THAT(roadfix(over_service + "127.0.0.1").err, HasSubstr("bad-url"));
   EXPECT_THAT(roadfix(over_service + "http://127.0.0.1:1 --patience 0").err, HasSubstr("service-silent"));

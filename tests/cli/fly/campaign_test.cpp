@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cstdint>
-#include <filesystem>
 #include <numeric>
 #include <opencv2/imgcodecs.hpp>
 #include <thread>
@@ -137,7 +136,7 @@ TEST_F(Campaigns, EndAllFlightsWhereOneFails) {
 TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
   const testing::TemporaryFolder folder;
   FlightPictureOptions options;
-  options.folder = (folder / "pictures").string();
+  options.folder = folder.path().string();
   options.film = "film.gif";
   options.steps = {0, 3};
   options.longest_px = 200;
@@ -148,8 +147,8 @@ TEST_F(Campaigns, AreShownAsPicturesAndAsAFilm) {
   };
   run(campaign, map.zone);
   pictures.finish();
-  const cv::Mat first = cv::imread((folder / "pictures/paper-0000.png").string());
-  const cv::Mat last = cv::imread((folder / "pictures/default-0005.png").string());
+  const cv::Mat first = cv::imread((folder / "paper-0000.png").string());
+  const cv::Mat last = cv::imread((folder / "default-0005.png").string());
   ASSERT_EQ(first.cols, 200);
   EXPECT_EQ(first.size(), last.size());
   EXPECT_GT(cv::norm(first, last, cv::NORM_INF), 100.0) << "the vehicle has moved";

@@ -86,18 +86,31 @@ cv::Mat blank_squares(const Blocks& blocks, int block_px) {
 
 }  // namespace
 
-void exclude_blank(GroundImage& image) {
+void exclude_blank(GroundImage& image) { exclude_blank(image, {{}, image.observed.size()}); }
+
+void exclude_blank(GroundImage& image, const cv::Rect& part) {
+  if (part.empty()) return;
   const int block_px = std::max(kMinBlockPx, static_cast<int>(std::lround(kBlankSideM / kBlocks / image.gsd_m)));
-  cv::Mat blank = blank_squares(blocks_of(image, block_px), block_px);
+  const cv::Point last = (part.br() - cv::Point(1, 1)) / block_px;
+  const cv::Point reach(kBlocks, kBlocks);  // of squares that begin before the part or end after it, and one block more
+  const cv::Point first(std::max(part.x / block_px - reach.x, 0), std::max(part.y / block_px - reach.y, 0));
+  const cv::Rect whole({}, image.observed.size());
+  const cv::Rect around = cv::Rect(first * block_px, (last + reach + cv::Point(1, 1)) * block_px) & whole;
+  const GroundImage seen{image.pixels(around), image.observed(around), image.gsd_m};
+  cv::Mat blank = blank_squares(blocks_of(seen, block_px), block_px);
+  // Squares that begin beyond the part may go on beyond what was looked at.
+  const cv::Point squares = last - first + cv::Point(1, 1);
+  blank.colRange(std::min(squares.x, blank.cols), blank.cols).setTo(0);
+  blank.rowRange(std::min(squares.y, blank.rows), blank.rows).setTo(0);
   if (cv::countNonZero(blank) == 0) return;
   // The blocks of each square and one around them.
   cv::dilate(blank, blank, cv::Mat::ones(kBlocks + 2, kBlocks + 2, CV_8UC1), {kBlocks, kBlocks});
   image.observed = image.observed.clone();
-  const cv::Rect whole({0, 0}, image.observed.size());
   for (int row = 0; row < blank.rows; ++row) {
     for (int col = 0; col < blank.cols; ++col) {
       if (blank.at<std::uint8_t>(row, col) == 0) continue;
-      image.observed(cv::Rect(col * block_px, row * block_px, block_px, block_px) & whole).setTo(0);
+      const cv::Point corner = (first + cv::Point(col, row)) * block_px;
+      image.observed(cv::Rect(corner, cv::Size(block_px, block_px)) & whole).setTo(0);
     }
   }
 }

@@ -16,5 +16,7 @@ inline constexpr double kBlankSideM = 16.0;
 /// more than one level, together with a quarter of a side around them, which codecs blur. Squares are tried at
 /// multiples of a quarter of a side.
 void exclude_blank(GroundImage& image);
+/// Only squares in which something of the part lies.
+void exclude_blank(GroundImage& image, const cv::Rect& part);
 
 }  // namespace roadfix

@@ -70,6 +70,14 @@ void require_no_heights_beside_colours(const Content& first, const Content& othe
   }
 }
 
+/// Within the picture that it is a part of.
+cv::Rect place_in_view(const GroundImage& part) {
+  cv::Size whole;
+  cv::Point corner;
+  part.observed.locateROI(whole, corner);
+  return {corner, part.observed.size()};
+}
+
 double bytes_of_rows(const RasterFile& file, double rows) {
   GDALDataset& dataset = file.dataset();
   const int bytes = GDALGetDataTypeSizeBytes(dataset.GetRasterBand(1)->GetRasterDataType());
@@ -213,7 +221,7 @@ GroundImage Mosaic::view(const GridBox& box, double gsd_m) const {
     Orthoimage part = part_within(all, grown(images_[i].footprint, kReachedPixels * gsd_m));
     warp_into({*handle->file, handle->georeference, images_[i].range, images_[i].collar.get()}, part.box(), part.image);
     give_back(std::move(handle));
-    if (rule_ == ValueRule::kPicture) exclude_blank(result);
+    if (rule_ == ValueRule::kPicture) exclude_blank(result, place_in_view(part.image));
   }
   return result;
 }

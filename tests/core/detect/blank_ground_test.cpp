@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <opencv2/imgproc.hpp>
+#include <random>
 
 namespace roadfix {
 namespace {
@@ -91,6 +92,27 @@ TEST(BlankGround, LeavesTheMaskOfACopyAlone) {
   const GroundImage copy = image;
   exclude_blank(image);
   EXPECT_EQ(cv::countNonZero(copy.observed), 100 * 100);
+}
+
+TEST(BlankGround, IsFoundAroundWhatAnotherPictureAddsAsInAllOfTheView) {
+  std::mt19937 random(5);
+  const auto below = [&](int limit) { return std::uniform_int_distribution(0, limit - 1)(random); };
+  for (int view = 0; view < 20; ++view) {
+    GroundImage image = ground({200, 150}, 1.0);
+    for (int third = 0; third < 3; ++third) {
+      const cv::Rect roof(third * 67, below(90), 10 + below(50), 10 + below(50));
+      image.pixels(roof).setTo(cv::Scalar::all(30 + third * 70));
+    }
+    image.observed.setTo(0);
+    for (int added = 0; added < 8; ++added) {
+      const cv::Rect part = cv::Rect(below(200), below(150), 1 + below(120), 1 + below(120)) & cv::Rect(0, 0, 200, 150);
+      image.observed(part).setTo(255);
+      GroundImage all = image;
+      exclude_blank(all);
+      exclude_blank(image, part);
+      ASSERT_EQ(cv::countNonZero(image.observed != all.observed), 0) << view << ' ' << added;
+    }
+  }
 }
 
 }  // namespace

@@ -54,6 +54,22 @@ class MosaicTest : public ::testing::Test {
   testing::TemporaryFolder folder;
 };
 
+TEST_F(MosaicTest, WhatAnImageShowsBlankDoesNotDependOnOthersElsewhereInTheView) {
+  // A roof beside a yard of another colour that is too narrow to be blank, but would be where the roof was not seen.
+  RasterSpec spec{.width = 64, .height = 64};
+  spec.transform = {kCentre.east_m, 1.0, 0.0, kCentre.north_m + 64, 0.0, -1.0};
+  const std::string roof = write_raster(folder / "roof.tif", spec, [](int, int col, int row) {
+    return col < 24 ? 200.0 : col < 36 ? 90.0 : 120.0 + texture(col, row);
+  });
+  const auto seen = [&](const std::vector<std::string>& paths) {
+    const Mosaic mosaic(paths, {}, ValueRule::kPicture, kZone);
+    return mosaic.view(box(0, 0, 512), 1.0).observed(cv::Rect(0, 448, 64, 64)).clone();
+  };
+  const cv::Mat alone = seen({roof});
+  EXPECT_EQ(cv::countNonZero(alone.colRange(28, 64)), 36 * 64);
+  EXPECT_EQ(cv::countNonZero(alone != seen({roof, square("far.tif", 256, 256, 64, 100)})), 0);
+}
+
 TEST_F(MosaicTest, TheFirstImageThatHoldsSomethingWins) {
   const Mosaic mosaic({square("a.tif", 0, 0, 64, 100, 16), square("b.tif", 0, 0, 64, 200)}, {}, ValueRule::kPicture,
                       kZone);

@@ -135,7 +135,9 @@ class BenchRunOfACamera : public BenchRun {
 
 TEST_F(BenchRunOfACamera, PlacesTheUav) {
   describe_frame("agl_m", 250.0);
-  for (const SetResult& result : run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads", "sift")")) {
+  const auto results = run(R"({"map": "town", "frames": "oblique.csv"})", R"("roads", "sift")");
+  ASSERT_EQ(results.size(), 2U);
+  for (const SetResult& result : results) {
     const Outcome& outcome = result.outcomes.at(0);
     EXPECT_LT(outcome.error_m.value(), 3.0) << to_string(result.method);
     EXPECT_LT(outcome.heading_error_deg.value(), 1.0) << to_string(result.method);

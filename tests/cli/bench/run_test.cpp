@@ -23,7 +23,9 @@ using ::testing::ThrowsMessage;
 constexpr const char* kImageQueries = R"({"map": "town", "image": "town.png", "count": 3, "footprint_m": [300, 240]})";
 
 TEST_F(BenchRun, PlacesFramesCutFromTheMapsOwnImageryByEveryMethod) {
-  for (const SetResult& result : run(kImageQueries, R"("roads", "sift", "orb")")) {
+  const auto results = run(kImageQueries, R"("roads", "sift", "orb")");
+  ASSERT_EQ(results.size(), 3U);
+  for (const SetResult& result : results) {
     const Summary s = summary_of(result.outcomes);
     EXPECT_EQ(s.n, 3) << to_string(result.method);
     EXPECT_EQ(s.recall_5, 1.0) << to_string(result.method);

@@ -51,7 +51,7 @@ void add_with_side_files(const std::string& path, std::set<std::string>& files) 
   if (is_alone(path)) return;
   files.insert(path + "-wal");
   const GdalMessages messages;
-  const DatasetPtr dataset(GDALDataset::Open(path.c_str(), GDAL_OF_RASTER | GDAL_OF_VECTOR | GDAL_OF_READONLY));
+  const DatasetPtr dataset = try_to_open(path, GDAL_OF_RASTER | GDAL_OF_VECTOR);
   if (!dataset) return;
   const CPLStringList list(dataset->GetFileList(), TRUE);
   for (int i = 0; i < list.size(); ++i) {

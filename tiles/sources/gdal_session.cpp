@@ -1,6 +1,7 @@
 #include "tiles/sources/gdal_session.hpp"
 
 #include <cpl_conv.h>
+#include <cpl_string.h>
 #include <cpl_vsi.h>
 #include <fmt/format.h>
 
@@ -8,8 +9,11 @@
 #include <array>
 #include <cerrno>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
+#include <map>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -29,6 +33,21 @@ std::string begin_of(const std::string& path) {
   std::string bytes(4096, '\0');
   bytes.resize(file ? VSIFReadL(bytes.data(), 1, bytes.size(), file.get()) : 0);
   return bytes;
+}
+
+/// Whether GDAL would list the folder of the file, as it does for each that it opens, only to find the list too long
+/// and look for each file that may lie beside it by its name.
+bool is_in_large_folder(const std::string& path) {
+  static std::mutex mutex;
+  static std::map<std::string, bool> known;
+  const std::lock_guard lock(mutex);
+  const auto [folder, is_new] = known.try_emplace(CPLGetDirname(path.c_str()));
+  if (is_new) {
+    const int most = std::atoi(CPLGetConfigOption("GDAL_READDIR_LIMIT_ON_OPEN", "1000"));
+    const CPLStringList files(VSIReadDirEx(folder->first.c_str(), most), TRUE);
+    folder->second = most > 0 && files.size() > most;
+  }
+  return folder->second;
 }
 
 bool is_web_page(const std::string& begin) {
@@ -97,11 +116,17 @@ void CPL_STDCALL GdalMessages::collect(CPLErr severity, CPLErrorNum, const char*
 
 std::string GdalMessages::text() const { return last_.empty() ? std::string(kNone) : last_; }
 
-DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options) {
+DatasetPtr try_to_open(const std::string& path, unsigned flags, const char* const* open_options) {
   require_gdal();
+  std::optional<CPLConfigOptionSetter> without_list;
+  if (is_in_large_folder(path)) without_list.emplace("GDAL_DISABLE_READDIR_ON_OPEN", "TRUE", true);
+  return DatasetPtr(GDALDataset::Open(path.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
+                                      open_options, nullptr));
+}
+
+DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options) {
   const GdalMessages messages;
-  DatasetPtr dataset(GDALDataset::Open(path.c_str(), flags | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, nullptr,
-                                       open_options, nullptr));
+  DatasetPtr dataset = try_to_open(path, flags, open_options);
   if (dataset) return dataset;
   VSIStatBufL stat;
   errno = 0;

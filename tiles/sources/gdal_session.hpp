@@ -49,8 +49,10 @@ struct CloseFile {
 /// Of VSIFOpenL().
 using FilePtr = std::unique_ptr<VSILFILE, CloseFile>;
 
-/// Throws NotFound ("file-not-found") or InvalidInput ("source-unreadable") with GDAL's reason. `flags` and
-/// `open_options` are those of GDALOpenEx.
+/// nullptr where GDAL cannot. `flags` and `open_options` are those of GDALOpenEx.
+DatasetPtr try_to_open(const std::string& path, unsigned flags, const char* const* open_options = nullptr);
+
+/// Throws NotFound ("file-not-found") or InvalidInput ("source-unreadable") with GDAL's reason.
 DatasetPtr open_dataset(const std::string& path, unsigned flags, const char* const* open_options = nullptr);
 
 /// What to do about pixels that cannot be read, by what GDAL says of them.

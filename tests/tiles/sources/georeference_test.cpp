@@ -4,6 +4,7 @@
 
 #include <array>
 #include <fstream>
+#include <string>
 
 #include "tests/support/code_of.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -79,6 +80,19 @@ TEST_F(GeoreferenceTest, AWorldFileNeedsAReferenceSystemFromTheUser) {
       << "other commands, which have no such option, read rasters too";
   EXPECT_EQ(crs_name(RasterFile(path, {.crs = "EPSG:32637", .collar = {}}).crs()), "EPSG:32637");
   EXPECT_EQ(code_of([&] { RasterFile(path, {.crs = "EPSG:nonsense", .collar = {}}); }), "crs-unknown");
+}
+
+TEST_F(GeoreferenceTest, AWorldFileIsFoundAmongMoreFilesThanGdalLists) {
+  for (int i = 0; i < 1100; ++i) std::ofstream(folder / std::to_string(i));
+  const std::string path = write_raster(folder / "a.tif", {.epsg = 0, .transform = std::nullopt}, grey);
+  const RasterOptions options{.crs = "EPSG:32637", .collar = {}};
+  for (const int east_m : {400001, 500001}) {
+    std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n" << east_m << "\n4200127\n";
+    EXPECT_NEAR(centre_of(RasterFile(path, options)).lon_deg, east_m == 500001 ? 39.0 : 37.86, 0.01);
+  }
+  const std::string before = fingerprint({path}, "");
+  std::ofstream(folder / "a.tfw") << "2\n0\n0\n-2\n400001\n4200127\n";
+  EXPECT_NE(fingerprint({path}, ""), before);
 }
 
 TEST_F(GeoreferenceTest, PixelsWithoutAreaAreNotBlamedOnTheReferenceSystem) {

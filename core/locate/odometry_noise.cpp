@@ -5,13 +5,15 @@
 
 namespace roadfix {
 
-OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const VehicleNoise& noise) {
+OdometryCovariance covariance_of(const Odometry& odometry, double seconds, const VehicleNoise& noise, double unseen_m) {
   constexpr double kLeastM = 0.3;  // of a step of a second or less
   constexpr Angle kLeastTurn = Angle::degrees(0.5);
   const double walked = std::sqrt(std::max(1.0, seconds));
-  const double metres = walked * kLeastM + noise.odometry_share * distance_m(odometry);
+  const double share_m = noise.odometry_share * distance_m(odometry);
+  const double metres = walked * kLeastM + share_m;
+  const double metres2 = metres * metres + 2.0 * share_m * noise.odometry_share * unseen_m;
   const double turn = walked * kLeastTurn.radians() + noise.odometry_share * std::abs(odometry.turn.radians());
-  return {{{metres * metres, 0.0, 0.0}, {0.0, metres * metres, 0.0}, {0.0, 0.0, turn * turn}}};
+  return {{{metres2, 0.0, 0.0}, {0.0, metres2, 0.0}, {0.0, 0.0, turn * turn}}};
 }
 
 namespace {

@@ -36,9 +36,11 @@ constexpr double kTriedShare = 0.1;  // of the particles, that try other drifts 
 
 }  // namespace
 
-OdometryCovariance StepMotion::odometry_covariance() const {
+OdometryCovariance StepMotion::odometry_covariance() const { return covariance_after(0.0); }
+
+OdometryCovariance StepMotion::covariance_after(double unseen_m) const {
   if (told_.covariance) return *told_.covariance;
-  return covariance_of(*told_.odometry, told_.seconds / static_cast<double>(1 + told_.lost_steps), vehicle_);
+  return covariance_of(*told_.odometry, told_.seconds / static_cast<double>(1 + told_.lost_steps), vehicle_, unseen_m);
 }
 
 bool StepMotion::odometry_is_complete() const { return wind().is_none() && told_.lost_steps == 0; }
@@ -69,6 +71,7 @@ AcceptanceRegion StepMotion::region() const {
 double StepMotion::move(Filter& filter) {
   const bool coasted = std::exchange(learned_.coasts, coasts());
   if (told_.odometry) return follow_odometry(filter, coasted);
+  learned_.unseen_m += travelled_m();
   const auto& planar = vehicle_.planar;
   if (!planar) return coast(filter, !coasted);
   return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk()});
@@ -92,13 +95,14 @@ double StepMotion::strays_by_m() const {
          faster_by_m(learned_.coasted_s);
 }
 
-void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0}; }
+void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0, 0.0}; }
 
 /// If the step before told no motion, the drift of the particles was their whole velocity: they draw a new one.
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
   const auto [odometry, covariance] =
-      with_lost_steps(*told_.odometry, odometry_covariance(), static_cast<double>(told_.lost_steps));
+      with_lost_steps(*told_.odometry, covariance_after(learned_.unseen_m), static_cast<double>(told_.lost_steps));
   const OdometryMotion motion(odometry, covariance, told_.seconds, wind().walk());
+  learned_.unseen_m += travelled_m();
   learned_.coasted_s = 0.0;
   if (told_.seconds >= kShortestS) learn_velocity(odometry);
   if (!coasted) return predict(filter, motion);

@@ -26,6 +26,7 @@ struct LearnedMotion {
   bool odometry_is_wrong = false;        ///< was found to be: a wind is learned though none was told
   bool coasts = false;     ///< the last step told no motion: the drift of the particles is their whole velocity
   double coasted_s = 0.0;  ///< since the last step that told the motion
+  double unseen_m = 0.0;   ///< travelled since a frame last told something of the place
   friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;
 };
 
@@ -38,7 +39,7 @@ class StepMotion {
 
   const ToldMotion& told() const { return told_; }
   const LearnedMotion& learned() const { return learned_; }
-  /// Of this step's odometry, which must be there, without that of lost steps.
+  /// Of this step's odometry, which must be there, by itself, without that of lost steps.
   OdometryCovariance odometry_covariance() const;
   /// Whether odometry, if there is any, is the whole motion over the ground: no wind, no lost steps.
   bool odometry_is_complete() const;
@@ -53,6 +54,8 @@ class StepMotion {
   void carry(Reach& reach) const;
   /// Moves the particles; returns what Filter::predict() does. Throws as OdometryMotion does.
   double move(Filter& filter);
+  /// A frame told something of the place.
+  void see() { learned_.unseen_m = 0.0; }
   /// Forgets what was learned, but for odometry found to be wrong.
   void begin_anew();
 
@@ -68,6 +71,7 @@ class StepMotion {
   double strays_by_m() const;
   Wind wind() const;
   void learn_velocity(const Odometry& odometry);
+  OdometryCovariance covariance_after(double unseen_m) const;
   double follow_odometry(Filter& filter, bool coasted);
   double coast(Filter& filter, bool begins);
   Gaussian turn_goes_on() const;

@@ -56,6 +56,7 @@ StepResult Tracker::Step::run() {
     take_in_features();
     see();
   }
+  if (!saw_nothing()) motion_.see();
   // Frames that contradict the place may contradict what bounds it: the odometry, or that the start was known.
   if (was_confirmed && !state_.claim.confirmed) state_.reach.reset();
   state_.last = StepStamp{input_.sequence, input_.time_us};

@@ -38,6 +38,20 @@ TEST(OdometryNoise, IsTheShareThatIsTold) {
   expect_sigmas(covariance_of({0.0, 100.0, Angle::degrees(10.0)}, 1.0, vehicle), 0.3 + 20.0, 0.5 + 2.0);
 }
 
+TEST(OdometryNoise, IsTheSameShareOfAllThatWasTravelledSinceAFrame) {
+  const VehicleNoise unsaid;
+  double variance_m2 = 0.0;
+  double variance_with_frames_m2 = 0.0;
+  for (int step = 0; step < 40; ++step) {
+    variance_m2 += covariance_of({9.0, 12.0, {}}, 1.0, unsaid, 15.0 * step)[1][1];
+    variance_with_frames_m2 += covariance_of({9.0, 12.0, {}}, 1.0, unsaid)[1][1];
+  }
+  const double share_of_each_m = 0.05 * 15.0;
+  const double share_of_all_m = 0.05 * 600.0;
+  EXPECT_NEAR(variance_m2 - variance_with_frames_m2,
+              share_of_all_m * share_of_all_m - 40.0 * share_of_each_m * share_of_each_m, 1e-9);
+}
+
 TEST(OdometryNoise, IsHalfOfWhatLostStepsMayHaveMoved) {
   const OdometryCovariance of_one{{{1.0, 0.5, 0.0}, {0.5, 4.0, 0.0}, {0.0, 0.0, 0.01}}};
   const auto [odometry, covariance] = with_lost_steps({6.0, 8.0, Angle::degrees(10.0)}, of_one, 2.0);

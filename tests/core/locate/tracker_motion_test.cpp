@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <numeric>
 #include <vector>
@@ -49,6 +50,35 @@ TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
     last = advance(tracker, step);
   }
   EXPECT_LT(error_m(last, flight.pose()), 15.0);
+}
+
+/// 1 sigma in that direction. The ellipse is told from true north, a degree off at most.
+double sigma_along_m(const Ellipse& ellipse, Angle heading) {
+  const double off = (heading - ellipse.heading).radians();
+  return std::hypot(ellipse.sigma_m[0] * std::cos(off), ellipse.sigma_m[1] * std::sin(off));
+}
+
+TEST_F(Track, CountsAScaleOfItsOdometryThatIsWrongByAllThatItFliesUnseen) {
+  int claims = 0;
+  for (std::uint64_t seed = 21; seed < 21 + repeats(4U); ++seed) {
+    const Tracker tracker(view_, settings());
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    ASSERT_TRUE(fly(tracker, flight, 8).converged()) << seed;
+    for (int i = 0; i < 50; ++i) {
+      const GridPose before = flight.pose();
+      StepInput step = flight.step(false);
+      flight.jump_to(moved(before, {20.0, 0.0, {}}));
+      step.odometry = Odometry{i % 2 == 0 ? 20.9 : 21.1, 0.0, {}};  // off by the share of 5 %, 1 sigma
+      const TrackEstimate estimate = advance(tracker, step);
+      if (!estimate.converged()) continue;
+      ++claims;
+      EXPECT_LT(error_m(estimate, flight.pose()),
+                2.5 * sigma_along_m(estimate.clusters[0].ellipse, flight.pose().heading))
+          << "seed " << seed << ", " << i << " s";
+    }
+  }
+  EXPECT_GE(claims, static_cast<int>(repeats(4U)) * 15) << "300 m";
 }
 
 TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {

@@ -34,7 +34,32 @@ constexpr double kLeastFoundWindMS = 5.0;
 constexpr double kShortestS = 0.01;  // times are not accurate enough to tell the velocity of a shorter step
 constexpr double kTriedShare = 0.1;  // of the particles, that try other drifts while the odometry seems right
 
+BodyVelocity velocity_at_end(const Odometry& odometry, double seconds) {
+  const BodyOffset back = offset_from(moved({}, odometry), {});
+  return {-back.forward_m / seconds, -back.right_m / seconds};
+}
+
+bool repeats(const ToldMotion& told, const LearnedMotion& before) {
+  constexpr double kLeastM = 1.0;   // a slower vehicle is not far from where it was
+  constexpr double kSameM = 0.002;  // clients round to a millimetre, and a thousandth of a degree
+  constexpr double kSameDeg = 0.002;
+  if (!told.odometry || !before.velocity || distance_m(*told.odometry) < kLeastM || told.seconds < kShortestS) {
+    return false;
+  }
+  const BodyVelocity velocity = velocity_at_end(*told.odometry, told.seconds);
+  const Angle turn = told.odometry->turn - Angle::radians(told.seconds * before.turn_rate_rad_s);
+  return told.seconds * std::abs(velocity.forward_m_s - before.velocity->forward_m_s) <= kSameM &&
+         told.seconds * std::abs(velocity.right_m_s - before.velocity->right_m_s) <= kSameM &&
+         std::abs(turn.degrees()) <= kSameDeg;
+}
+
 }  // namespace
+
+StepMotion::StepMotion(const VehicleNoise& vehicle, const AcceptanceRegion& flight, const ToldMotion& told,
+                       const LearnedMotion& before)
+    : vehicle_(vehicle), flight_(flight), told_(told), learned_(before) {
+  if (before.unseen_m > 0.0 && repeats(told, before)) told_.odometry.reset();
+}
 
 OdometryCovariance StepMotion::odometry_covariance() const { return covariance_after(0.0); }
 
@@ -113,8 +138,7 @@ double StepMotion::follow_odometry(Filter& filter, bool coasted) {
 }
 
 void StepMotion::learn_velocity(const Odometry& odometry) {
-  const BodyOffset back = offset_from(moved({}, odometry), {});
-  learned_.velocity = {-back.forward_m / told_.seconds, -back.right_m / told_.seconds};
+  learned_.velocity = velocity_at_end(odometry, told_.seconds);
   learned_.turn_rate_rad_s = odometry.turn.radians() / told_.seconds;
 }
 

@@ -34,9 +34,10 @@ class StepMotion {
  public:
   /// `flight`: where particles live, but for their drift. `vehicle` and `flight` outlive this.
   StepMotion(const VehicleNoise& vehicle, const AcceptanceRegion& flight, const ToldMotion& told,
-             const LearnedMotion& before)
-      : vehicle_(vehicle), flight_(flight), told_(told), learned_(before) {}
+             const LearnedMotion& before);
 
+  /// Without odometry that, unseen, repeats that of the step before to the last digit: the vehicle's estimator has
+  /// stopped, as those of live ones differ by their noise.
   const ToldMotion& told() const { return told_; }
   const LearnedMotion& learned() const { return learned_; }
   /// Of this step's odometry, which must be there, by itself, without that of lost steps.

@@ -103,7 +103,8 @@ void Tracker::Step::begin_or_move() {
 }
 
 void Tracker::Step::move() {
-  state_.last_view.move(input_.odometry, motion_.odometry_is_complete());
+  const std::optional<Odometry>& odometry = motion_.told().odometry;
+  state_.last_view.move(odometry, motion_.odometry_is_complete());
   if (motion_.told().seconds > kLongestGapS) {
     filter_.start_uniformly(tracker_.region_.poses);
     motion_.begin_anew();
@@ -124,8 +125,8 @@ void Tracker::Step::move() {
   }
   state_.claim.fly(motion_.travelled_m());
   // Frames can be laid together only if the odometry is the motion over the ground, and their scale is known.
-  if (input_.odometry && motion_.odometry_is_complete() && settings_.vehicle.scale_range <= 0.0) {
-    state_.recent.move(*input_.odometry, motion_.odometry_covariance());
+  if (odometry && motion_.odometry_is_complete() && settings_.vehicle.scale_range <= 0.0) {
+    state_.recent.move(*odometry, motion_.odometry_covariance());
   } else {
     state_.recent.clear();
   }

@@ -103,6 +103,29 @@ TEST(StepMotion, TakesNoVelocityFromAStepTooShortToTellOne) {
   EXPECT_EQ(motion.learned().velocity, kFlewAt20MS.velocity);
 }
 
+TEST(StepMotion, TakesOdometryThatRepeatsItselfUnseenForThatOfAnEstimatorThatHasStopped) {
+  const VehicleNoise vehicle;
+  const Odometry turning{16.0, 2.0, Angle::degrees(4.0)};
+  StepMotion first(vehicle, kFlight, {turning, {}, 1.0}, {});
+  Filter filter = filter_at(first, {{500.0, 500.0}, Angle()});
+  first.move(filter);
+  const LearnedMotion unseen = first.learned();
+  const auto is_believed = [&](const Odometry& odometry, double seconds, const LearnedMotion& before) {
+    return StepMotion(vehicle, kFlight, {odometry, {}, seconds}, before).told().odometry.has_value();
+  };
+  EXPECT_FALSE(is_believed(turning, 1.0, unseen));
+  EXPECT_FALSE(is_believed({16.001, 2.0, Angle::degrees(4.0)}, 1.0, unseen)) << "rounded otherwise";
+  EXPECT_TRUE(is_believed({16.01, 2.0, Angle::degrees(4.0)}, 1.0, unseen));
+  EXPECT_TRUE(is_believed({16.0, 2.01, Angle::degrees(4.0)}, 1.0, unseen));
+  EXPECT_TRUE(is_believed({16.0, 2.0, Angle::degrees(4.01)}, 1.0, unseen));
+  EXPECT_TRUE(is_believed(turning, 1.1, unseen)) << "of another velocity";
+  const LearnedMotion straight{BodyVelocity{16.0, 2.0}, 0.0, false, false, 0.0, 32.0};
+  EXPECT_FALSE(is_believed({17.6, 2.2, {}}, 1.1, straight)) << "of the same velocity for longer";
+  EXPECT_TRUE(is_believed({0.0, 0.0, {}}, 1.0, {BodyVelocity{}, 0.0, false, false, 0.0, 32.0})) << "it stands";
+  first.see();
+  EXPECT_TRUE(is_believed(turning, 1.0, first.learned())) << "a frame tells whether it is right";
+}
+
 TEST(StepMotion, CountsLostStepsAsLikeThisOne) {
   const VehicleNoise vehicle;
   StepMotion motion(vehicle, kFlight, {Odometry{10.0, 0.0, {}}, {}, 3.0, 2}, {});
@@ -173,15 +196,15 @@ TEST(StepMotion, LeavesEachParticleTheWindThatItHas) {
 TEST(StepMotion, FollowsOdometryAloneOnceItIsToldAgain) {
   const auto [before, learned] = coasted(20.0);
   const VehicleNoise vehicle;
-  StepMotion motion(vehicle, kFlight, {Odometry{30.0, 0.0, {}}, OdometryCovariance{}, 1.5}, learned);
+  StepMotion motion(vehicle, kFlight, {Odometry{33.0, 0.0, {}}, OdometryCovariance{}, 1.5}, learned);
   FilterOptions options = FilterOptions::paper(5'000);
   options.injected_share = 0.0;
   Filter filter(options, motion.region(), before);
   motion.move(filter);
   const Particles& p = filter.particles();
   for (std::size_t i = 0; i < p.size(); ++i) {
-    ASSERT_NEAR(p.east_m[i] - before.particles.east_m[i], 30.0 * std::sin(p.heading_rad[i]), 1e-9);
-    ASSERT_NEAR(p.north_m[i] - before.particles.north_m[i], 30.0 * std::cos(p.heading_rad[i]), 1e-9);
+    ASSERT_NEAR(p.east_m[i] - before.particles.east_m[i], 33.0 * std::sin(p.heading_rad[i]), 1e-9);
+    ASSERT_NEAR(p.north_m[i] - before.particles.north_m[i], 33.0 * std::cos(p.heading_rad[i]), 1e-9);
     ASSERT_EQ(p.drift_east_m_s[i], 0.0) << "there is no wind";
   }
   EXPECT_EQ(motion.learned().coasted_s, 0.0);

@@ -81,6 +81,28 @@ TEST_F(Track, CountsAScaleOfItsOdometryThatIsWrongByAllThatItFliesUnseen) {
   EXPECT_GE(claims, static_cast<int>(repeats(4U)) * 15) << "300 m";
 }
 
+TEST_F(Track, SoonClaimsNoPlaceWhereAnEstimatorThatHasStoppedRepeatsItsMovement) {
+  int claims = 0;
+  for (std::uint64_t seed = 21; seed < 21 + repeats(4U); ++seed) {
+    const Tracker tracker(view_, settings());
+    Flight flight(map_, start_, seed);
+    state_ = {};
+    ASSERT_TRUE(fly(tracker, flight, 8).converged()) << seed;
+    for (int i = 0; i < 30; ++i) {
+      const GridPose before = flight.pose();
+      StepInput step = flight.step(false);
+      flight.jump_to(moved(before, {20.0, 0.0, {}}));
+      step.odometry = Odometry{20.0, 0.0, Angle::degrees(6.0)};  // it turned when the estimator stopped
+      const TrackEstimate estimate = advance(tracker, step);
+      if (!estimate.converged()) continue;
+      ++claims;
+      EXPECT_LT(error_m(estimate, flight.pose()), 2.5 * estimate.clusters[0].ellipse.sigma_m[0])
+          << "seed " << seed << ", " << i << " s";
+    }
+  }
+  EXPECT_LE(claims, static_cast<int>(repeats(4U)) * 6);
+}
+
 TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
   int claims = 0;
   for (std::uint64_t seed = 21; seed < 21 + repeats(4U); ++seed) {

@@ -8,11 +8,11 @@
 #include <atomic>
 #include <map>
 #include <memory>
-#include <opencv2/imgcodecs.hpp>
 #include <span>
 
 #include "cli/bench/feature_method.hpp"
 #include "cli/bench/queries.hpp"
+#include "cli/evaluation/write_picture.hpp"
 #include "core/units/error.hpp"
 
 namespace roadfix::bench {
@@ -60,13 +60,9 @@ void draw_picture(const Method& method, const Query& query, const Answer& answer
   const std::filesystem::path file = picture_of(query.id, drawing.folder);
   const cv::Mat picture = method.drawn(query, answer, drawing.imagery);
   if (picture.empty()) return;  // nothing to see, say of keypoints in a feature map
-  std::error_code failed;
+  std::error_code failed;       // which writing says
   std::filesystem::create_directories(file.parent_path(), failed);
-  if (failed || !cv::imwrite(file.string(), picture)) {
-    throw IoFailure("result-unwritable", fmt::format("{} cannot be written: check that its folder may be written to, "
-                                                     "and is not full",
-                                                     file.string()));
-  }
+  evaluation::write_picture(file, picture);
 }
 
 Answer answer_of(const Method& method, const Query& query) {

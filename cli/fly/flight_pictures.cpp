@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <opencv2/imgcodecs.hpp>
 #include <utility>
 
-#include "core/units/error.hpp"
+#include "cli/evaluation/write_picture.hpp"
 
 namespace roadfix::fly {
 namespace {
@@ -68,12 +67,7 @@ bool FlightPictures::chosen(std::int64_t step) const {
 
 void FlightPictures::write(const Reel& reel, const cv::Mat& picture, std::int64_t step) const {
   if (options_.folder.empty()) return;
-  const std::string file = fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step);
-  if (!cv::imwrite(file, picture)) {
-    throw IoFailure("result-unwritable", fmt::format("{} cannot be written: check that its folder may be written to, "
-                                                     "and is not full",
-                                                     file));
-  }
+  evaluation::write_picture(fmt::format("{}/{}-{:04}.png", options_.folder, reel.filter, step), picture);
 }
 
 }  // namespace roadfix::fly

@@ -8,7 +8,7 @@
 #include "cli/fly/campaign.hpp"
 #include "cli/fly/recording.hpp"
 #include "cli/fly_options.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 
 namespace roadfix::cli {
 

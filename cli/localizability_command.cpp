@@ -16,7 +16,7 @@
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "cli/unit_options.hpp"
-#include "core/locate/map_survey.hpp"
+#include "core/survey/map_survey.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/json_parts.hpp"
 #include "server/api/route_json.hpp"

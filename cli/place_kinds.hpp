@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/locate/localizability.hpp"
+#include "core/survey/localizability.hpp"
 
 namespace roadfix::cli {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "core/locate/route_survey.hpp"
+#include "core/survey/route_survey.hpp"
 
 namespace roadfix::cli {
 

@@ -11,7 +11,7 @@ CREATE TABLE IF NOT EXISTS tracks (
   touched_us  INTEGER NOT NULL,        -- created, or the last step
   ended       TEXT NOT NULL DEFAULT '',-- '' while it flies, else 'finished' or 'expired'
   end_number  INTEGER,                 -- counts the ends, since dates may go back; NULL while it flies
-  state       BLOB                     -- core/locate/tracker_bytes; NULL before the first step and after the end
+  state       BLOB                     -- core/track/tracker_bytes; NULL before the first step and after the end
 ) WITHOUT ROWID;
 
 CREATE TABLE IF NOT EXISTS steps (

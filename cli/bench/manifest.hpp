@@ -11,7 +11,7 @@
 
 #include "core/detect/frame_image.hpp"
 #include "core/detect/orthoimage.hpp"
-#include "core/locate/simulate.hpp"
+#include "core/survey/simulate.hpp"
 #include "core/units/angle.hpp"
 #include "core/units/words.hpp"
 

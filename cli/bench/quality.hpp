@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-#include "core/locate/simulate.hpp"
+#include "core/survey/simulate.hpp"
 
 namespace roadfix::bench {
 

@@ -7,7 +7,7 @@
 
 #include "cli/bench/manifest.hpp"
 #include "cli/bench/query.hpp"
-#include "core/locate/simulate.hpp"
+#include "core/survey/simulate.hpp"
 
 namespace roadfix::bench {
 

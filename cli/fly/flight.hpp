@@ -12,7 +12,7 @@
 #include "cli/fly/pilot.hpp"
 #include "cli/fly/sensor.hpp"
 #include "cli/fly/vehicle.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "core/units/index_range.hpp"
 
 namespace roadfix::fly {

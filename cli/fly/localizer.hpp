@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/fly/flight.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 
 namespace roadfix::fly {
 

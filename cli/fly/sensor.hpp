@@ -15,7 +15,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/grid/relief.hpp"
 #include "core/locate/map_view.hpp"
-#include "core/locate/simulate.hpp"
+#include "core/survey/simulate.hpp"
 
 namespace roadfix::fly {
 

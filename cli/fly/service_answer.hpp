@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 
 namespace roadfix::fly {
 

@@ -9,7 +9,7 @@
 #include "core/grid/cell_moments.hpp"
 #include "core/locate/footprint_refusal.hpp"
 #include "core/locate/frame_agreement.hpp"
-#include "core/locate/last_view.hpp"
+#include "core/locate/same_view.hpp"
 #include "core/locate/soft_map.hpp"
 #include "core/units/error.hpp"
 

@@ -8,8 +8,8 @@
 #include <span>
 
 #include "core/locate/fix.hpp"
-#include "core/locate/localizability.hpp"
 #include "core/match/correlation.hpp"
+#include "core/survey/localizability.hpp"
 #include "server/api/features.hpp"
 
 namespace roadfix::api {

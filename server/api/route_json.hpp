@@ -1,10 +1,10 @@
-// What a survey along a route found (core/locate/route_survey.hpp), as JSON.
+// What a survey along a route found (core/survey/route_survey.hpp), as JSON.
 #pragma once
 
 #include <array>
 #include <nlohmann/json_fwd.hpp>
 
-#include "core/locate/route_survey.hpp"
+#include "core/survey/route_survey.hpp"
 #include "core/units/words.hpp"
 
 namespace roadfix::api {

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "core/locate/track_estimate.hpp"
+#include "core/track/track_estimate.hpp"
 
 namespace roadfix::api {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/limits.hpp"
 

@@ -1,6 +1,6 @@
-#include "core/locate/localizability.hpp"
-#include "core/locate/route_survey.hpp"
+#include "core/survey/localizability.hpp"
 #include "core/routes/route.hpp"
+#include "core/survey/route_survey.hpp"
 
 #include <fmt/format.h>
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <string>
 
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "core/units/bytes.hpp"
 #include "core/units/error.hpp"
 #include "core/units/fnv.hpp"

@@ -9,7 +9,7 @@
 #include <set>
 #include <vector>
 
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "server/maps/map_registry.hpp"
 
 namespace roadfix::server {

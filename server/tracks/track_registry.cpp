@@ -6,7 +6,7 @@
 #include <random>
 #include <set>
 
-#include "core/locate/tracker_bytes.hpp"
+#include "core/track/tracker_bytes.hpp"
 #include "core/units/error.hpp"
 #include "server/api/fields.hpp"
 #include "server/api/json_body.hpp"

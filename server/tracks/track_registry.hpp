@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/locate/calibration.hpp"
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "server/api/limits.hpp"
 #include "server/maps/map_registry.hpp"
 #include "server/tracks/live_track.hpp"

@@ -58,7 +58,7 @@ class TrackStore {
   /// As one that flies.
   void add(const StoredTrack& track);
   std::optional<StoredTrack> find(const std::string& id) const;
-  /// After the last step (core/locate/tracker_bytes); empty before the first one.
+  /// After the last step (core/track/tracker_bytes); empty before the first one.
   std::vector<std::byte> state(const std::string& id) const;
   /// Newest first.
   std::vector<StoredTrack> flying() const;

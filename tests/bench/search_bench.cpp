@@ -13,10 +13,10 @@
 
 #include "core/grid/resample.hpp"
 #include "core/locate/fix.hpp"
-#include "core/locate/simulate.hpp"
 #include "core/match/footprint.hpp"
 #include "core/match/kernel.hpp"
 #include "core/match/score.hpp"
+#include "core/survey/simulate.hpp"
 #include "tiles/view/map_file_view.hpp"
 
 namespace roadfix {

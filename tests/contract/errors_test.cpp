@@ -8,7 +8,7 @@
 #include <regex>
 #include <sstream>
 
-#include "core/locate/track_estimate.hpp"
+#include "core/track/track_estimate.hpp"
 #include "server/api/problem.hpp"
 #include "server/http/errors.hpp"
 #include "tests/contract/error_codes.hpp"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "core/locate/tracker_bytes.hpp"
+#include "core/track/tracker_bytes.hpp"
 #include "core/units/error.hpp"
 #include "server/api/json_body.hpp"
 #include "server/api/position_answer.hpp"

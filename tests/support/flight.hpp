@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "core/locate/tracker.hpp"
+#include "core/track/tracker.hpp"
 #include "core/units/draws.hpp"
 #include "tests/support/street_map.hpp"
 

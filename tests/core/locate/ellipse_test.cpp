@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "core/geodesy/utm.hpp"
-#include "core/locate/track_geometry.hpp"
+#include "core/locate/map_view.hpp"
 
 namespace roadfix {
 namespace {
@@ -57,28 +57,6 @@ TEST(Ellipse, GrowsByTheErrorOfTheMapsRegistrationOnBothAxes) {
   const Ellipse ellipse = ellipse_of(map_registered_to(6.0), kFarFromTheMeridian, covariance);
   EXPECT_NEAR(ellipse.sigma_m[0], 10.0, 1e-9);
   EXPECT_NEAR(ellipse.sigma_m[1], 6.0, 1e-9);
-}
-
-TEST(Ellipse, TheCircleOfNinetyFivePercentHoldsTheErrorOfTheMapsRegistrationToo) {
-  Cluster cluster;
-  cluster.mean.position = kFarFromTheMeridian;
-  cluster.covariance = covariance_of(Angle(), 3.0, 3.0);
-  cluster.radius95_m = kSigmasOf95 * 3.0;
-  EXPECT_NEAR(to_geographic(map_registered_to(0.0), cluster, 0.0).radius95_m, kSigmasOf95 * 3.0, 1e-9);
-  const TrackCluster on_earth = to_geographic(map_registered_to(4.0), cluster, 0.0);
-  EXPECT_NEAR(on_earth.ellipse.sigma_m[0], 5.0, 1e-9);
-  EXPECT_NEAR(on_earth.radius95_m, kSigmasOf95 * 5.0, 1e-9);
-}
-
-TEST(Ellipse, ATrackHoldsTheErrorOfTheNadirToo) {
-  Cluster cluster;
-  cluster.mean.position = kFarFromTheMeridian;
-  cluster.covariance = covariance_of(Angle(), 9.0, 5.0);
-  cluster.radius95_m = kSigmasOf95 * 9.0;
-  const TrackCluster on_earth = to_geographic(map_registered_to(0.0), cluster, 12.0);
-  EXPECT_NEAR(on_earth.ellipse.sigma_m[0], 15.0, 1e-9);
-  EXPECT_NEAR(on_earth.ellipse.sigma_m[1], 13.0, 1e-9);
-  EXPECT_NEAR(on_earth.radius95_m, kSigmasOf95 * 15.0, 1e-9);
 }
 
 }  // namespace

@@ -1,0 +1,19 @@
+// When two frames are one picture: a camera or a link that has stopped shows it again and again.
+#pragma once
+
+#include "core/grid/feature_map.hpp"
+
+namespace roadfix {
+
+/// A vehicle that moved so far has to see something else; a hovering simulator draws the same picture again and again,
+/// while its odometry may jitter.
+inline constexpr double kMovedM = 1.0;
+/// So has one that has turned by half a degree.
+bool has_moved(double moved_m, double turned_rad);
+
+bool shows_road(const FeatureMap& features);
+
+/// Whether two pictures are the same to the last cell. False without any road: one wood looks like the next.
+bool is_same_view(const FeatureMap& a, const FeatureMap& b);
+
+}  // namespace roadfix

@@ -31,7 +31,7 @@
 #include "core/units/text.hpp"
 #include "server/api/feature_json.hpp"
 #include "tiles/export/side_files.hpp"
-#include "tiles/sources/read_orthoimage.hpp"
+#include "tiles/imagery/read_orthoimage.hpp"
 
 namespace roadfix::cli {
 namespace {

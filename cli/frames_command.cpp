@@ -19,8 +19,8 @@
 #include "core/units/error.hpp"
 #include "core/units/text.hpp"
 #include "server/api/position_answer.hpp"
-#include "tiles/sources/drone_picture.hpp"
-#include "tiles/sources/picture_tags.hpp"
+#include "tiles/imagery/drone_picture.hpp"
+#include "tiles/imagery/picture_tags.hpp"
 
 namespace roadfix::cli {
 namespace {

@@ -12,17 +12,17 @@
 #include <vector>
 
 #include "cli/command.hpp"
-#include "cli/ingest_report.hpp"
+#include "cli/ingest/ingest_report.hpp"
+#include "cli/ingest/road_options.hpp"
 #include "cli/output_file.hpp"
-#include "cli/road_options.hpp"
 #include "cli/terminal.hpp"
 #include "cli/threads_option.hpp"
 #include "core/units/error.hpp"
 #include "core/units/file.hpp"
 #include "core/units/parallel_for.hpp"
+#include "tiles/imagery/read_orthoimage.hpp"
 #include "tiles/pipeline/open_source.hpp"
 #include "tiles/pipeline/training_pairs.hpp"
-#include "tiles/sources/read_orthoimage.hpp"
 
 namespace roadfix::cli {
 namespace {

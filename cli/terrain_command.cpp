@@ -13,7 +13,7 @@
 #include "core/units/error.hpp"
 #include "core/units/json_text.hpp"
 #include "server/api/map_json.hpp"
-#include "tiles/sources/elevation_models.hpp"
+#include "tiles/imagery/elevation_models.hpp"
 #include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_writer.hpp"
 

@@ -13,11 +13,11 @@
 
 #include "core/units/file_beside.hpp"
 #include "core/units/fnv.hpp"
+#include "tiles/imagery/elevation_models.hpp"
+#include "tiles/imagery/read_orthoimage.hpp"
 #include "tiles/pipeline/ingest.hpp"
 #include "tiles/pipeline/open_source.hpp"
-#include "tiles/sources/elevation_models.hpp"
 #include "tiles/sources/fingerprint.hpp"
-#include "tiles/sources/read_orthoimage.hpp"
 #include "tiles/store/map_reader.hpp"
 #include "tiles/store/map_writer.hpp"
 #include "tiles/view/map_file_view.hpp"

@@ -20,7 +20,7 @@
 #include "core/locate/altitude.hpp"
 #include "core/locate/prior.hpp"
 #include "core/units/error.hpp"
-#include "tiles/sources/read_orthoimage.hpp"
+#include "tiles/imagery/read_orthoimage.hpp"
 
 namespace roadfix::bench {
 namespace {

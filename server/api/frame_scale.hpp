@@ -12,7 +12,7 @@
 #include "core/detect/frame_camera.hpp"
 #include "server/api/features.hpp"
 #include "server/api/fields.hpp"
-#include "tiles/sources/drone_picture.hpp"
+#include "tiles/imagery/drone_picture.hpp"
 
 namespace roadfix::api {
 

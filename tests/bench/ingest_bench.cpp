@@ -11,9 +11,9 @@
 #include "core/detect/neural_detector.hpp"
 #include "core/detect/tree_detector.hpp"
 #include "tests/support/temporary_folder.hpp"
+#include "tiles/imagery/mosaic.hpp"
+#include "tiles/imagery/raster_sources.hpp"
 #include "tiles/pipeline/ingest.hpp"
-#include "tiles/sources/mosaic.hpp"
-#include "tiles/sources/raster_sources.hpp"
 #include "tiles/store/map_writer.hpp"
 #include "tiles/world/world.hpp"
 

@@ -16,7 +16,7 @@
 #include "tests/support/run_program.hpp"
 #include "tests/support/taken_over.hpp"
 #include "tests/support/temporary_folder.hpp"
-#include "tiles/sources/read_orthoimage.hpp"
+#include "tiles/imagery/read_orthoimage.hpp"
 
 namespace roadfix {
 namespace {

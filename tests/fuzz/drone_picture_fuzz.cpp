@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "tiles/sources/drone_picture.hpp"
+#include "tiles/imagery/drone_picture.hpp"
 
 namespace {
 

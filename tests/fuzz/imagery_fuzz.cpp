@@ -7,7 +7,7 @@
 
 #include "core/geodesy/utm.hpp"
 #include "core/units/error.hpp"
-#include "tiles/sources/mosaic.hpp"
+#include "tiles/imagery/mosaic.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   constexpr const char* kPath = "/vsimem/fuzzed.tif";

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/poly_file.hpp"
+#include "tiles/roads/poly_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

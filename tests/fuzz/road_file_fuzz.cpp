@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/vector_roads.hpp"
+#include "tiles/roads/vector_roads.hpp"
 
 namespace roadfix {
 namespace {

@@ -6,8 +6,8 @@
 #include <string_view>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/osm_tags.hpp"
-#include "tiles/sources/road_rules.hpp"
+#include "tiles/roads/osm_tags.hpp"
+#include "tiles/roads/road_rules.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);

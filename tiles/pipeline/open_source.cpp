@@ -5,8 +5,8 @@
 #include <cassert>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/georeference.hpp"
-#include "tiles/sources/vector_roads.hpp"
+#include "tiles/imagery/georeference.hpp"
+#include "tiles/roads/vector_roads.hpp"
 #include "tiles/store/map_reader.hpp"
 
 namespace roadfix {

@@ -6,11 +6,11 @@
 
 #include "core/detect/road_detector.hpp"
 #include "core/geodesy/latlon.hpp"
+#include "tiles/imagery/collar.hpp"
+#include "tiles/imagery/raster_sources.hpp"
+#include "tiles/roads/road_lines.hpp"
+#include "tiles/roads/road_rules.hpp"
 #include "tiles/sources/cell_source.hpp"
-#include "tiles/sources/collar.hpp"
-#include "tiles/sources/raster_sources.hpp"
-#include "tiles/sources/road_lines.hpp"
-#include "tiles/sources/road_rules.hpp"
 #include "tiles/sources/source_files.hpp"
 #include "tiles/store/map_records.hpp"
 

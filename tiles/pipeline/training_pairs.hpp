@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/grid/geometry.hpp"
+#include "tiles/imagery/mosaic.hpp"
 #include "tiles/sources/cell_source.hpp"
-#include "tiles/sources/mosaic.hpp"
 
 namespace roadfix {
 

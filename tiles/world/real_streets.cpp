@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/sources/road_lines.hpp"
+#include "tiles/roads/road_lines.hpp"
 #include "tiles/sources/source_files.hpp"
 #include "tiles/world/polygon.hpp"
 #include "tiles/world/street_network.hpp"

@@ -3,7 +3,7 @@
 #include <string>
 #include <utility>
 
-#include "tiles/sources/road_lines.hpp"
+#include "tiles/roads/road_lines.hpp"
 #include "tiles/world/conditions.hpp"
 #include "tiles/world/country.hpp"
 #include "tiles/world/country_disaster.hpp"

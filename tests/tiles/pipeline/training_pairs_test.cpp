@@ -7,9 +7,9 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "tests/tiles/sources/road_features.hpp"
+#include "tests/tiles/roads/road_features.hpp"
 #include "tests/tiles/sources/test_raster.hpp"
-#include "tiles/sources/vector_roads.hpp"
+#include "tiles/roads/vector_roads.hpp"
 
 namespace roadfix {
 namespace {

@@ -8,8 +8,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "tests/tiles/world/small_world.hpp"
+#include "tiles/roads/road_lines.hpp"
 #include "tiles/sources/gdal_session.hpp"
-#include "tiles/sources/road_lines.hpp"
 
 namespace roadfix::world {
 namespace {

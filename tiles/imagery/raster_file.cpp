@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "core/units/error.hpp"
-#include "tiles/imagery/band_colours.hpp"
 #include "tiles/imagery/nodata.hpp"
 #include "tiles/imagery/picture_range.hpp"
 #include "tiles/imagery/raster_reference.hpp"
@@ -20,18 +19,10 @@
 namespace roadfix {
 namespace {
 
-constexpr int kOpaque = 128;
-
 DatasetPtr open_raster(const std::string& path, std::optional<int> overview) {
   CPLStringList options;
   if (overview) options.SetNameValue("OVERVIEW_LEVEL", fmt::format("{}", *overview).c_str());
   return open_dataset(path, GDAL_OF_RASTER, options.List());
-}
-
-/// GDAL before 3.7 knows them by a remark beside the type only, and reads -1 as 255.
-bool holds_signed_bytes(GDALRasterBand& band) {
-  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
-  return band.GetRasterDataType() == GDT_Byte && type != nullptr && EQUAL(type, "SIGNEDBYTE");
 }
 
 /// Least and largest of the valid values and 0.
@@ -53,59 +44,30 @@ RasterFile::RasterFile(std::string path, const RasterOptions& options, std::opti
                                    "of its subdatasets (gdalinfo lists them)",
                                    path_));
   }
-  find_bands();
+  bands_ = bands_of(*dataset_);
+  filled_ = filled_parts(*dataset_, bands_.colours.front());
+  if (!filled_) find_stored_parts();
   crs_ = reference_of(*dataset_, path_, options.crs);
 }
 
-void RasterFile::find_bands() {
-  const std::array<int, 3> by_colour = colour_bands(*dataset_);
-  std::vector<int> opaque;
-  for (int i = 1; i <= dataset_->GetRasterCount(); ++i) {
-    const bool alpha = dataset_->GetRasterBand(i)->GetColorInterpretation() == GCI_AlphaBand;
-    if (alpha) alpha_band_ = i;
-    if (!alpha) opaque.push_back(i);
-  }
-  if (opaque.empty()) opaque.push_back(1);
-  if (std::ranges::all_of(by_colour, [](int i) { return i > 0; })) {
-    colour_bands_.assign(by_colour.begin(), by_colour.end());
-  } else if (opaque.size() >= 3) {
-    colour_bands_ = {opaque[2], opaque[1], opaque[0]};
-  } else {
-    colour_bands_ = {opaque[0]};
-  }
-  GDALRasterBand& first = first_band();
-  signed_bytes_ = holds_signed_bytes(first);
-  const GDALColorTable* table = colour_bands_.size() == 1 ? first.GetColorTable() : nullptr;
-  for (int i = 0; table != nullptr && i < table->GetColorEntryCount(); ++i) {
-    GDALColorEntry entry{};
-    table->GetColorEntryAsRGB(i, &entry);
-    palette_.push_back({static_cast<std::uint8_t>(entry.c3), static_cast<std::uint8_t>(entry.c2),
-                        static_cast<std::uint8_t>(entry.c1), static_cast<std::uint8_t>(entry.c4)});
-  }
-  has_mask_ = alpha_band_ == 0 && (first.GetMaskFlags() & GMF_PER_DATASET) != 0;
-  filled_ = filled_parts(*dataset_, colour_bands_.front());
-  for (const int band : colour_bands_) nodata_.push_back(nodata_of(*dataset_->GetRasterBand(band)));
-  if (!filled_) find_stored_parts();
-}
-
 void RasterFile::find_stored_parts() {
-  std::vector<int> bands = colour_bands_;
-  if (alpha_band_ > 0) bands.push_back(alpha_band_);
+  std::vector<int> bands = bands_.colours;
+  if (bands_.alpha > 0) bands.push_back(bands_.alpha);
   std::optional<StoredParts> stored = stored_parts(*dataset_, bands);
   if (stored && is_nothing(stored->left_out)) filled_ = std::move(stored->parts);
 }
 
 bool RasterFile::is_nothing(cv::Point pixel) {
   const cv::Rect window(pixel, cv::Size(1, 1));
-  if (alpha_band_ > 0) return cv::countNonZero(read_alpha(window)) == 0;
+  if (bands_.alpha > 0) return cv::countNonZero(read_alpha(window)) == 0;
   cv::Mat valid(window.size(), CV_8UC1, cv::Scalar(255));
-  clear_nodata(read_stored(window), nodata_, valid);
+  clear_nodata(read_stored(window), bands_.nodata, valid);
   return cv::countNonZero(valid) == 0;
 }
 
 std::optional<ValueRange> RasterFile::declared_range() const {
   GDALRasterBand& band = first_band();
-  if (band.GetRasterDataType() != GDT_Byte || signed_bytes_) return std::nullopt;
+  if (band.GetRasterDataType() != GDT_Byte || bands_.signed_bytes) return std::nullopt;
   const char* bits = band.GetMetadataItem("NBITS", "IMAGE_STRUCTURE");
   const int count = bits != nullptr ? std::clamp(std::atoi(bits), 1, 8) : 8;
   return ValueRange{0.0, static_cast<double>((1 << count) - 1)};
@@ -114,7 +76,7 @@ std::optional<ValueRange> RasterFile::declared_range() const {
 bool RasterFile::holds_integers() const { return GDALDataTypeIsInteger(first_band().GetRasterDataType()) != 0; }
 
 std::optional<int> RasterFile::overview_for(double reduction) const {
-  if (signed_bytes_) return std::nullopt;  // overviews do not tell that theirs are
+  if (bands_.signed_bytes) return std::nullopt;  // overviews do not tell that theirs are
   GDALRasterBand& band = first_band();
   std::optional<int> best;
   double best_factor = 1.0;
@@ -145,22 +107,11 @@ RasterPixels RasterFile::read(cv::Rect window, const ValueRange& range) {
   const bool bytes = declared_range().has_value();
   const cv::Mat raw = read_stored(window);
   clear_nothing(window, raw, result.valid);
-  if (range.shares && !bytes && palette_.empty()) {
+  if (range.shares && !bytes && !has_palette()) {
     require_shares(path_, extremes(raw, result.valid), range, holds_integers());
   }
-  if (!palette_.empty()) {
-    cv::Mat indices;
-    raw.convertTo(indices, CV_32S);
-    result.values.create(raw.size(), CV_8UC3);
-    for (int row = 0; row < raw.rows; ++row) {
-      for (int col = 0; col < raw.cols; ++col) {
-        const auto index = static_cast<std::size_t>(std::max(0, indices.at<int>(row, col)));
-        const std::array<std::uint8_t, 4> entry =
-            index < palette_.size() ? palette_[index] : std::array<std::uint8_t, 4>{};
-        result.values.at<cv::Vec3b>(row, col) = {entry[0], entry[1], entry[2]};
-        if (entry[3] < kOpaque) result.valid.at<std::uint8_t>(row, col) = 0;
-      }
-    }
+  if (has_palette()) {
+    result.values = colours_of(raw, bands_, result.valid);
   } else if (bytes && range.low == 0.0 && range.high == 255.0) {
     result.values = raw;
   } else {
@@ -182,14 +133,15 @@ cv::Mat RasterFile::read_stored(cv::Rect window) {
 cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type) {
   const auto turn = take_turn();
   const GdalMessages messages;
-  const auto channels = static_cast<int>(colour_bands_.size());
+  const auto channels = static_cast<int>(bands_.colours.size());
   cv::Mat pixels(window.size(), CV_MAKETYPE(cv_depth, channels));
   const auto value_bytes = static_cast<GSpacing>(pixels.elemSize1());
-  const CPLErr outcome = dataset_->RasterIO(
-      GF_Read, window.x, window.y, window.width, window.height, pixels.data, window.width, window.height, type,
-      channels, colour_bands_.data(), value_bytes * channels, static_cast<GSpacing>(pixels.step), value_bytes, nullptr);
+  const CPLErr outcome =
+      dataset_->RasterIO(GF_Read, window.x, window.y, window.width, window.height, pixels.data, window.width,
+                         window.height, type, channels, bands_.colours.data(), value_bytes * channels,
+                         static_cast<GSpacing>(pixels.step), value_bytes, nullptr);
   if (outcome != CE_None) fail(window, messages.text());
-  if (signed_bytes_) {
+  if (bands_.signed_bytes) {
     cv::Mat values = pixels.reshape(1);
     cv::subtract(values, cv::Scalar(256.0), values, values >= 128.0);
   }
@@ -198,7 +150,7 @@ cv::Mat RasterFile::read_bands(cv::Rect window, int cv_depth, GDALDataType type)
 
 cv::Mat RasterFile::read_alpha(cv::Rect window) {
   const auto turn = take_turn();
-  GDALRasterBand* mask = alpha_band_ > 0 ? dataset_->GetRasterBand(alpha_band_) : first_band().GetMaskBand();
+  GDALRasterBand* mask = bands_.alpha > 0 ? dataset_->GetRasterBand(bands_.alpha) : first_band().GetMaskBand();
   const GdalMessages messages;
   cv::Mat alpha(window.size(), CV_32FC1);
   if (mask->RasterIO(GF_Read, window.x, window.y, window.width, window.height, alpha.data, window.width, window.height,
@@ -209,7 +161,7 @@ cv::Mat RasterFile::read_alpha(cv::Rect window) {
 }
 
 const AlphaScale& RasterFile::opacity() {
-  if (!opacity_) opacity_ = alpha_band_ > 0 ? sample_opacity() : AlphaScale{};
+  if (!opacity_) opacity_ = bands_.alpha > 0 ? sample_opacity() : AlphaScale{};
   return *opacity_;
 }
 
@@ -223,16 +175,16 @@ AlphaScale RasterFile::sample_opacity() {
   };
   for (std::size_t i = 0; i < windows.size(); i += kStep) add(windows[i]);
   if (std::ranges::all_of(samples, [](float value) { return value == 0.0F; })) std::ranges::for_each(windows, add);
-  return alpha_scale(samples, dataset_->GetRasterBand(alpha_band_)->GetRasterDataType());
+  return alpha_scale(samples, dataset_->GetRasterBand(bands_.alpha)->GetRasterDataType());
 }
 
 cv::Mat RasterFile::read_opaque(cv::Rect window) {
-  if (alpha_band_ > 0 || has_mask_) return read_alpha(window) >= 0.5 * opacity().full;
+  if (bands_.alpha > 0 || bands_.has_mask) return read_alpha(window) >= 0.5 * opacity().full;
   return {window.size(), CV_8UC1, cv::Scalar(255)};
 }
 
 void RasterFile::clear_nothing(cv::Rect window, const cv::Mat& values, cv::Mat& valid) const {
-  clear_nodata(values, nodata_, valid);
+  clear_nodata(values, bands_.nodata, valid);
   if (filled_) clear_beside(*filled_, window, valid);
 }
 

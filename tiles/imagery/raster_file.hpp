@@ -3,7 +3,6 @@
 // Pixel coordinates follow GDAL: (0, 0) is the outer corner of the first pixel, (0.5, 0.5) its centre.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <mutex>
 #include <opencv2/core.hpp>
@@ -13,6 +12,7 @@
 
 #include "core/units/planar.hpp"
 #include "tiles/imagery/alpha_scale.hpp"
+#include "tiles/imagery/raster_bands.hpp"
 #include "tiles/sources/gdal_session.hpp"
 
 namespace roadfix {
@@ -54,16 +54,16 @@ class RasterFile {
   const OGRSpatialReference& crs() const { return crs_; }
   GDALDataset& dataset() const { return *dataset_; }
   /// The one of grey; of colours that of blue.
-  GDALRasterBand& first_band() const { return *dataset_->GetRasterBand(colour_bands_.front()); }
+  GDALRasterBand& first_band() const { return *dataset_->GetRasterBand(bands_.colours.front()); }
   cv::Size size() const { return {dataset_->GetRasterXSize(), dataset_->GetRasterYSize()}; }
   /// 3 for colour and palettes, 1 for grey.
-  int channels() const { return palette_.empty() && colour_bands_.size() < 3 ? 1 : 3; }
+  int channels() const { return !has_palette() && bands_.colours.size() < 3 ? 1 : 3; }
   /// The range that the type declares: 0..255, less where NBITS says so; nullopt where the values must be looked at.
   std::optional<ValueRange> declared_range() const;
-  bool has_palette() const { return !palette_.empty(); }
+  bool has_palette() const { return !bands_.palette.empty(); }
   bool holds_integers() const;
   /// Number of the band that says what is transparent, 0 without.
-  int alpha_band() const { return alpha_band_; }
+  int alpha_band() const { return bands_.alpha; }
   /// Index of the coarsest overview whose pixels are at most `reduction` times as wide as those of the image, and which
   /// knows what of it holds nothing.
   std::optional<int> overview_for(double reduction) const;
@@ -93,7 +93,6 @@ class RasterFile {
   float largest_value(float enough);
 
  private:
-  void find_bands();
   void find_stored_parts();
   /// By its nodata values or its opacity, which are those of all that a file leaves out.
   bool is_nothing(cv::Point pixel);
@@ -114,15 +113,10 @@ class RasterFile {
   std::string path_;
   DatasetPtr dataset_;
   OGRSpatialReference crs_;
-  std::vector<int> colour_bands_;                     ///< one, or three in the order blue, green, red
-  std::vector<std::optional<double>> nodata_;         ///< of each of them
-  std::vector<std::array<std::uint8_t, 4>> palette_;  ///< blue, green, red, opacity; empty without palette
-  int alpha_band_ = 0;                                ///< 0 without
-  std::optional<AlphaScale> opacity_;                 ///< as far as it is known
-  std::optional<std::vector<cv::Rect>> filled_;       ///< parts in which a file with gaps holds something
-  bool signed_bytes_ = false;                         ///< in the type of unsigned ones
-  bool has_mask_ = false;                             ///< a mask of the dataset that is no alpha band
-  std::mutex turns_;                                  ///< with the dataset, for reading
+  RasterBands bands_;
+  std::optional<AlphaScale> opacity_;            ///< as far as it is known
+  std::optional<std::vector<cv::Rect>> filled_;  ///< parts in which a file with gaps holds something
+  std::mutex turns_;                             ///< with the dataset, for reading
 };
 
 }  // namespace roadfix

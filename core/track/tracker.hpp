@@ -76,10 +76,10 @@ class Tracker {
   Tracker(MapView map, TrackSettings settings);
 
   /// Throws InvalidInput where number, time and movement of the step cannot follow: "step-late" for a sequence number
-  /// not above the last, "time-backwards", "impossible-speed".
+  /// not above the last, "time-backwards", "impossible-speed"; and as OdometryMotion does.
   static void require_possible(const TrackerState& before, const StepInput& step);
-  /// Throws as require_possible(); InvalidInput of OdometryMotion and of unusable feature maps; Interrupted when
-  /// asked to stop, and at the deadline in the first step.
+  /// Throws as require_possible(); InvalidInput of unusable feature maps; Interrupted when asked to stop, and at the
+  /// deadline in the first step.
   StepResult advance(const TrackerState& before, const StepInput& step, const StepLimits& limits = {}) const;
   /// Height above ground of a vehicle at that height above the sea after the step that led to the state, or before the
   /// first one: that above the ground of the particles, or of what the prior allows. Throws as required_agl_m().

@@ -337,6 +337,9 @@ TEST_F(Track, RefusesWhatItCannotUseAndNamesIt) {
             "no error")
       << "two frames at nearly the same time";
   EXPECT_EQ(refusal([](StepInput&) {}), "no error");
+  step.covariance = OdometryCovariance{{{1, 2, 0}, {2, 1, 0}, {0, 0, 1}}};
+  EXPECT_EQ(code_of([&] { tracker.advance({}, step); }), "covariance-not-positive")
+      << "though a first step goes nowhere";
 }
 
 }  // namespace

@@ -97,9 +97,7 @@ double StepMotion::move(Filter& filter) {
   const bool coasted = std::exchange(learned_.coasts, coasts());
   if (told_.odometry) return follow_odometry(filter, coasted);
   learned_.unseen_m += travelled_m();
-  const auto& planar = vehicle_.planar;
-  if (!planar) return coast(filter, !coasted);
-  return predict(filter, PlanarMotion{planar->speed_m_s, planar->turn_rate_rad_s, told_.seconds, wind().walk()});
+  return vehicle_.planar ? follow_speed(filter, *vehicle_.planar) : coast(filter, !coasted);
 }
 
 void StepMotion::carry(Reach& reach) const {
@@ -120,7 +118,7 @@ double StepMotion::strays_by_m() const {
          faster_by_m(learned_.coasted_s);
 }
 
-void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts(), 0.0, 0.0}; }
+void StepMotion::begin_anew() { learned_ = {std::nullopt, 0.0, learned_.odometry_is_wrong, coasts()}; }
 
 /// If the step before told no motion, the drift of the particles was their whole velocity: they draw a new one.
 double StepMotion::follow_odometry(Filter& filter, bool coasted) {
@@ -135,6 +133,16 @@ double StepMotion::follow_odometry(Filter& filter, bool coasted) {
     draw_drift(region, state, random);
     motion(state, random);
   });
+}
+
+/// Speed and turn rate err alike in all steps, so that it is the sigmas of those without a frame that add up, not their
+/// variances.
+double StepMotion::follow_speed(Filter& filter, const VehicleNoise::Planar& planar) {
+  const double grown = std::sqrt(1.0 + 2.0 * learned_.unseen_s / told_.seconds);
+  const Gaussian speed{planar.speed_m_s.mean, grown * planar.speed_m_s.sigma};
+  const Gaussian turn_rate{planar.turn_rate_rad_s.mean, grown * planar.turn_rate_rad_s.sigma};
+  learned_.unseen_s += told_.seconds;
+  return predict(filter, PlanarMotion{speed, turn_rate, told_.seconds, wind().walk()});
 }
 
 void StepMotion::learn_velocity(const Odometry& odometry) {

@@ -27,6 +27,7 @@ struct LearnedMotion {
   bool coasts = false;     ///< the last step told no motion: the drift of the particles is their whole velocity
   double coasted_s = 0.0;  ///< since the last step that told the motion
   double unseen_m = 0.0;   ///< travelled since a frame last told something of the place
+  double unseen_s = 0.0;   ///< flown since then by the speed that is told for the vehicle
   friend bool operator==(const LearnedMotion&, const LearnedMotion&) = default;
 };
 
@@ -56,7 +57,7 @@ class StepMotion {
   /// Moves the particles; returns what Filter::predict() does. Throws as OdometryMotion does.
   double move(Filter& filter);
   /// A frame told something of the place.
-  void see() { learned_.unseen_m = 0.0; }
+  void see() { learned_.unseen_m = learned_.unseen_s = 0.0; }
   /// Forgets what was learned, but for odometry found to be wrong.
   void begin_anew();
 
@@ -74,6 +75,7 @@ class StepMotion {
   void learn_velocity(const Odometry& odometry);
   OdometryCovariance covariance_after(double unseen_m) const;
   double follow_odometry(Filter& filter, bool coasted);
+  double follow_speed(Filter& filter, const VehicleNoise::Planar& planar);
   double coast(Filter& filter, bool begins);
   Gaussian turn_goes_on() const;
   template <MotionModel Motion>

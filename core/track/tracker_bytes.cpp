@@ -21,7 +21,7 @@ using Frame = RecentFrames::Frame;
 
 static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kWordBytes = 8;
-constexpr std::uint64_t kMagic = 0x3730'5354'4652ULL;  // "RFTS07"
+constexpr std::uint64_t kMagic = 0x3830'5354'4652ULL;  // "RFTS08"
 
 [[noreturn]] void refuse(const char* why) {
   throw CorruptData("track-store-corrupt",
@@ -36,7 +36,7 @@ void pass_members(auto& io, auto& state) {
   io(searched, last->sequence, last->time_us, measured, last_search, nadir_sigma_m, accepted_time_us);
   io(claim.supported, claim.log_odds, claim.confirmed, claim.looked_time_us, claim.flown_m);
   io(motion.velocity, motion.turn_rate_rad_s, motion.odometry_is_wrong, motion.coasts, motion.coasted_s,
-     motion.unseen_m, reach);
+     motion.unseen_m, motion.unseen_s, reach);
   io(last_view.seen, last_view.stands_still, last_view.earlier, last_view.earlier_picture);
   io(filter.seed, filter.step, filter.resets, filter.slow_fit, filter.fast_fit, filter.particles);
   io(recent);
@@ -222,8 +222,8 @@ bool is_valid(const Reach& reach) {
 
 bool is_valid(const TrackerState& state) {
   return state.measured - 1 <= state.last->sequence && state.last_search <= state.measured &&
-         state.nadir_sigma_m >= 0.0 && state.motion.unseen_m >= 0.0 && is_valid(state.claim) &&
-         is_valid(state.last_view) && is_valid(state.filter) && is_valid(state.recent) &&
+         state.nadir_sigma_m >= 0.0 && state.motion.unseen_m >= 0.0 && state.motion.unseen_s >= 0.0 &&
+         is_valid(state.claim) && is_valid(state.last_view) && is_valid(state.filter) && is_valid(state.recent) &&
          (!state.reach || is_valid(*state.reach));
 }
 

@@ -210,6 +210,43 @@ TEST(StepMotion, FollowsOdometryAloneOnceItIsToldAgain) {
   EXPECT_EQ(motion.learned().coasted_s, 0.0);
 }
 
+/// 1 sigma of the way, m, and of the turn, rad, after 20 s by a speed and a turn rate known to 1 m/s and 0.01 rad/s.
+std::pair<double, double> spread_by_told_speed(int steps, bool sees) {
+  VehicleNoise vehicle;
+  vehicle.planar = VehicleNoise::Planar{{0.0, 1.0}, {0.0, 0.01}};  // the mean goes nowhere: headings don't bend the way
+  LearnedMotion learned;
+  FilterOptions options = FilterOptions::paper(5'000);
+  options.injected_share = 0.0;
+  Filter filter(options, kFlight, 1);
+  filter.start_anew_from(std::vector<Proposal>{{{{500.0, 500.0}, Angle()}}}, 0.0, kFlight.poses);
+  for (int k = 0; k < steps; ++k) {
+    StepMotion motion(vehicle, kFlight, {{}, {}, 20.0 / steps}, learned);
+    motion.move(filter);
+    if (sees) motion.see();
+    learned = motion.learned();
+  }
+  const Particles& p = filter.particles();
+  double metres2 = 0.0;
+  double turn2 = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    metres2 += (std::pow(p.east_m[i] - 500.0, 2.0) + std::pow(p.north_m[i] - 500.0, 2.0)) / 5e3;
+    turn2 += p.heading_rad[i] * p.heading_rad[i] / 5e3;
+  }
+  return {std::sqrt(metres2), std::sqrt(turn2)};
+}
+
+TEST(StepMotion, AddsUpTheErrorsOfAToldSpeedAndTurnRateUntilAFrameComes) {
+  const double five_errors = 5.0 / std::sqrt(2.0 * 5e3);
+  for (const int steps : {1, 4, 100}) {
+    const auto [metres, turn] = spread_by_told_speed(steps, false);
+    EXPECT_NEAR(metres, 20.0, five_errors * 20.0) << steps;
+    EXPECT_NEAR(turn, 0.2, five_errors * 0.2) << steps;
+    const auto [seen_metres, seen_turn] = spread_by_told_speed(steps, true);
+    EXPECT_NEAR(seen_metres, 20.0 / std::sqrt(steps), five_errors * 20.0 / std::sqrt(steps)) << steps;
+    EXPECT_NEAR(seen_turn, 0.2 / std::sqrt(steps), five_errors * 0.2 / std::sqrt(steps)) << steps;
+  }
+}
+
 /// By how much particles turn, mean and deviation, when a vehicle that turned so fast tells no motion any more.
 std::pair<double, double> turned_by_deg(double seconds, int steps, double turn_deg_s) {
   const VehicleNoise vehicle;

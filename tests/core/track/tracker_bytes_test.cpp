@@ -58,7 +58,7 @@ TrackerState flown() {
   earlier.nadir_heading_sigma = Angle::radians(0.01);
   state.last_view.earlier.keep(earlier);
   state.last_view.earlier_picture = {testing::random_sketch(3), {12.5, -0.5, Angle::degrees(3.0)}, true};
-  state.motion = {BodyVelocity{14.5, -0.25}, 0.1, true, true, 2.5, 45.0};
+  state.motion = {BodyVelocity{14.5, -0.25}, 0.1, true, true, 2.5, 45.0, 3.5};
   state.reach = Reach{{600'700.5, 6'399'400.25}, Angle::degrees(60.0), 31.5, Angle::degrees(6.0), 0.01};
   return state;
 }
@@ -172,6 +172,7 @@ TEST(TrackerBytes, WithValuesThatNoTrackHasAreRefused) {
       [](TrackerState& s) { s.last_search = s.measured + 1; },
       [](TrackerState& s) { s.nadir_sigma_m = -1.0; },
       [](TrackerState& s) { s.motion.unseen_m = -1.0; },
+      [](TrackerState& s) { s.motion.unseen_s = -1.0; },
       [](TrackerState& s) { s.claim.supported = TrackClaim::kMaxSupport + 1; },
       [](TrackerState& s) { s.claim.log_odds = -0.5; },
       [](TrackerState& s) { s.last_view.seen[1].moved_m = -1.0; },

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <functional>
 #include <numeric>
+#include <optional>
 #include <vector>
 
 #include "core/filter/clusters.hpp"
@@ -59,9 +60,9 @@ TEST_F(Track, GoesOnByEquation4OrConstantVelocityWithoutOdometry) {
 class TrackUnseen : public Track {
  protected:
   /// Hands over each estimate that claims a place, with the true pose. `told`: the odometry, by the number of the step.
-  void fly_unseen(std::uint64_t seed, int steps, const std::function<Odometry(int)>& told,
+  void fly_unseen(std::uint64_t seed, int steps, const std::function<std::optional<Odometry>(int)>& told,
                   const std::function<void(const TrackEstimate&, const GridPose&)>& claimed) {
-    const Tracker tracker(view_, settings());
+    const Tracker tracker(view_, settings_);
     Flight flight(map_, start_, seed);
     state_ = {};
     ASSERT_TRUE(fly(tracker, flight, 8).converged()) << seed;
@@ -75,6 +76,8 @@ class TrackUnseen : public Track {
       if (estimate.converged()) claimed(estimate, flight.pose());
     }
   }
+
+  TrackSettings settings_ = settings();
 };
 
 /// 1 sigma in that direction. The ellipse is told from true north, a degree off at most.
@@ -96,6 +99,20 @@ TEST_F(TrackUnseen, CountsAScaleOfItsOdometryThatIsWrongByAllThatItFlies) {
     if (HasFatalFailure()) return;
   }
   EXPECT_GE(claims, static_cast<int>(repeats(4U)) * 15) << "300 m";
+}
+
+TEST_F(TrackUnseen, CountsASpeedThatIsToldWronglyByAllThatItFlies) {
+  settings_.vehicle.planar = VehicleNoise::Planar{{21.0, 1.0}, {0.0, Angle::degrees(0.5).radians()}};  // by 1 sigma
+  int claims = 0;
+  const auto nothing = [](int) { return std::nullopt; };
+  for (std::uint64_t seed = 21; seed < 21 + repeats(4U); ++seed) {
+    fly_unseen(seed, 50, nothing, [&](const TrackEstimate& estimate, const GridPose& truth) {
+      ++claims;
+      EXPECT_LT(error_m(estimate, truth), 2.5 * sigma_along_m(estimate.clusters[0].ellipse, truth.heading));
+    });
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GE(claims, static_cast<int>(repeats(4U)) * 10) << "200 m";
 }
 
 TEST_F(TrackUnseen, SoonClaimsNoPlaceWhereAnEstimatorThatHasStoppedRepeatsItsMovement) {

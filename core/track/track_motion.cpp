@@ -15,9 +15,9 @@ namespace {
 constexpr double kScaleWalkShare = 0.03;
 
 // Without odometry the velocity may change by this share of the speed within a second, and by at least so many m/s
-// (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter.
+// (1 sigma per axis). A turn of 15 degrees a second changes it by a quarter; a copter that hovered sets off as fast.
 constexpr double kManoeuvreShare = 0.5;
-constexpr double kLeastManoeuvreMS = 1.0;
+constexpr double kLeastManoeuvreMS = 3.0;
 // It goes on turning for some seconds, or may have stopped: 1 sigma as a share of the turn.
 constexpr double kTurnLastsS = 3.0;
 constexpr double kTurnDoubt = 0.5;

@@ -157,8 +157,8 @@ std::pair<FilterState, LearnedMotion> coasted(double speed_m_s) {
   return {filter.state(), coasting.learned()};
 }
 
-TEST(StepMotion, GoesOnAsItFlewAndDoubtsHalfOfItsSpeedAndAMetreASecondAtLeast) {
-  for (const auto& [speed_m_s, sigma_m_s] : {std::pair(20.0, 10.0), {1.0, 1.0}, {0.0, 1.0}}) {
+TEST(StepMotion, GoesOnAsItFlewAndDoubtsHalfOfItsSpeedAndThreeMetresASecondAtLeast) {
+  for (const auto& [speed_m_s, sigma_m_s] : {std::pair(20.0, 10.0), {1.0, 3.0}, {0.0, 3.0}}) {
     const Particles p = coasted(speed_m_s).first.particles;
     const auto n = static_cast<double>(p.size());
     double east_m = 0.0;

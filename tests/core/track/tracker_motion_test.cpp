@@ -152,6 +152,25 @@ TEST_F(Track, GoesOnAsItFlewWhereOdometryEndsAndSoonClaimsNoPlace) {
   EXPECT_GT(claims, repeats(4) / 2);
 }
 
+TEST_F(Track, CountsThatACopterWhichHoveredMaySetOffOnceNothingTellsItsMovement) {
+  const Tracker tracker(view_, settings());
+  Flight flight(map_, start_, 21);
+  fly(tracker, flight, 8);
+  flight.step_m = 0.0;
+  EXPECT_TRUE(fly(tracker, flight, 3).converged());
+  for (int second = 1; second <= 12; ++second) {
+    const GridPose before = flight.pose();
+    StepInput step = flight.step(false);
+    step.odometry.reset();
+    flight.jump_to(moved(before, {std::min(3.0 * second - 1.5, 10.0), 0.0, {}}));  // by 3 m/s2, to 10 m/s
+    const TrackEstimate estimate = advance(tracker, step);
+    EXPECT_TRUE(estimate.converged() || second > 1);
+    if (estimate.converged()) {
+      EXPECT_LT(error_m(estimate, flight.pose()), 2.5 * estimate.clusters[0].ellipse.sigma_m[0]) << second << " s";
+    }
+  }
+}
+
 TEST_F(Track, ClaimsNoPlaceOfTheParticlesThatLagBehindWhereOthersHaveLeftTheGroundAround) {
   Flight flight(map_, start_, 1);
   ASSERT_TRUE(fly(Tracker(view_, settings()), flight, 10).converged());

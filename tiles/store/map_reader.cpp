@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <mutex>
+#include <thread>
 #include <utility>
 
 #include "core/grid/resample.hpp"
@@ -26,6 +27,12 @@ using sqlite::Access;
 using sqlite::Connection;
 using sqlite::Statement;
 using sqlite::Transaction;
+
+/// More are closed after use: each holds a descriptor and up to 2 MB of pages for as long as the map is served.
+std::size_t most_idle_channels() {
+  static const std::size_t processors = std::thread::hardware_concurrency();
+  return std::max<std::size_t>(4, processors);
+}
 
 /// A connection with its prepared query serves one thread at a time.
 struct Channel {
@@ -81,7 +88,7 @@ struct MapReader::State {
       });
     });
     const std::lock_guard lock(mutex);
-    idle.push_back(std::move(channel));
+    if (idle.size() < most_idle_channels()) idle.push_back(std::move(channel));
     return result;
   }
 

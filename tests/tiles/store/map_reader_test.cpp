@@ -221,5 +221,28 @@ TEST_F(MapReaderTest, NeverReadsAnotherFileThatTookItsPlace) {
   EXPECT_EQ(reader.tile(0, source.blocks[0]), expected);
 }
 
+TEST_F(MapReaderTest, ClosesWhatManyThreadsAtOnceHaveOpened) {
+  const auto map = folder / "other.gpkg";
+  {
+    MapWriter other(map, settings_37n());
+    ingest(other, source);
+  }
+  const MapReader reader(map, 0);
+  const unsigned processors = std::max(4U, std::thread::hardware_concurrency());
+  std::vector<std::jthread> threads;
+  for (unsigned t = 0; t < 4 * processors; ++t) {
+    threads.emplace_back([&] {
+      for (int i = 0; i < 20; ++i) reader.tile(0, source.blocks[0]);
+    });
+  }
+  threads.clear();
+  const auto opened =
+      std::ranges::count_if(std::filesystem::directory_iterator("/proc/self/fd"), [&](const auto& descriptor) {
+        std::error_code gone;
+        return std::filesystem::read_symlink(descriptor, gone) == map;
+      });
+  EXPECT_LE(opened, processors);
+}
+
 }  // namespace
 }  // namespace roadfix

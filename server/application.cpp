@@ -2,12 +2,15 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <exception>
 #include <limits>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 
+#include "core/units/memory.hpp"
 #include "server/api/problem.hpp"
 #include "server/failure_log.hpp"
 #include "server/maps/picture_cache.hpp"
@@ -15,6 +18,8 @@
 
 namespace roadfix::server {
 namespace {
+
+constexpr std::size_t kMostFreed = std::size_t{128} << 20;  // for each processor
 
 /// Faults of the service reach its log whole; the client learns only what it can act on.
 http::ErrorResponse error_response() {
@@ -107,7 +112,10 @@ Application::~Application() { stop(); }
 
 int Application::start() {
   const int port = parts_->server.start();
-  parts_->maps.watch(parts_->configuration.watch_interval, [this] { tidy(parts_->tracks); });
+  parts_->maps.watch(parts_->configuration.watch_interval, [this] {
+    tidy(parts_->tracks);
+    give_back_freed_memory_beyond(kMostFreed * std::max(2U, std::thread::hardware_concurrency()));
+  });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detectors.describe());
   if (const auto note = note_on_missing_network(parts_->configuration.detector)) spdlog::warn(*note);

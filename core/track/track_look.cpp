@@ -36,6 +36,21 @@ double probability_near(const Fix& fix, const Cluster& belief, const UtmZone& zo
   return near;
 }
 
+/// Whether the frame fits nearly as well some way off, as along a road without crossings: which place on it the search
+/// took then, is chance.
+bool slides(const MapView& map, const FeatureMap& frame, const GridPose& pose) {
+  constexpr double kApartM = 30.0;
+  constexpr int kDirections = 36;  // less than the width of a road apart
+  constexpr double kNearlyAsWell = 0.8;
+  const double least = kNearlyAsWell * rho_at(map, frame, pose).value_or(0.0);
+  for (int i = 0; i < kDirections; ++i) {
+    const Angle direction = Angle::degrees(360.0 * i / kDirections);
+    const GridPoint beside = moved({pose.position, direction}, {kApartM, 0.0, {}}).position;
+    if (rho_at(map, frame, {beside, pose.heading}).value_or(0.0) >= least) return true;
+  }
+  return false;
+}
+
 Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& zone) {
   constexpr double kMinProbability = 0.5;  // a place that chance explains has no more
   constexpr double kMaxShareHere = 0.2;    // of the best place's probability, if the vehicle is elsewhere
@@ -104,6 +119,9 @@ Look look_around(const TrackSearch& search, const MapView& map, const FeatureMap
       search.find(seen, *around, {.looks_beyond_prior = false, .search = {.straight_roads = 1}});
   if (!fix) return {};
   Look look{outcome_of(*fix, belief, map.zone), {}};
+  if (look.outcome == Look::Outcome::kBorneOut && slides(map, seen, on_grid(fix->modes.front().pose, map.zone))) {
+    look.outcome = Look::Outcome::kOpen;
+  }
   if (look.outcome == Look::Outcome::kElsewhere || look.outcome == Look::Outcome::kTurned) {
     look.places = proposals_of(map, *fix, seen);
     for (Proposal& place : look.places) place.log_scale += belief.log_scale;

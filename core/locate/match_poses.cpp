@@ -1,7 +1,9 @@
 #include "core/locate/match_poses.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdlib>
 #include <numbers>
 #include <utility>
 
@@ -72,16 +74,25 @@ std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, st
 }
 
 MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose) {
+  return sums_beside(map, features, pose, std::array{PlaneCell{}}).front();
+}
+
+std::vector<MatchSums> sums_beside(const MapView& map, const FeatureMap& features, const GridPose& pose,
+                                   std::span<const PlaneCell> offsets) {
   const LatticeIndex cell = lattice_index(pose.position, features.cell_m);
   const PackedFootprint footprint = footprint_at(features, pose.heading,
                                                  {pose.position.east_m / features.cell_m - cell.col - 0.5,
                                                   -pose.position.north_m / features.cell_m - cell.row - 0.5});
-  const int reach = footprint.reach();
+  int reach = footprint.reach();
+  for (const PlaneCell& offset : offsets) {
+    reach = std::max(reach, footprint.reach() + std::max(std::abs(offset.col), std::abs(offset.row)));
+  }
   const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
   const MapPlane plane(map.read(window).cells);
-  const PlaneCell middle{reach, reach};
-  MatchSums sums;
-  match_sums(plane, footprint, std::span(&middle, 1), std::span(&sums, 1));
+  std::vector<PlaneCell> places;
+  for (const PlaneCell& offset : offsets) places.push_back({reach + offset.col, reach + offset.row});
+  std::vector<MatchSums> sums(places.size());
+  match_sums(plane, footprint, places, sums);
   return sums;
 }
 

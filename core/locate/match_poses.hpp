@@ -10,6 +10,7 @@
 #include "core/grid/feature_map.hpp"
 #include "core/locate/map_view.hpp"
 #include "core/match/correlation.hpp"
+#include "core/match/kernel.hpp"
 
 namespace roadfix {
 
@@ -29,6 +30,9 @@ std::vector<MatchScore> match(const MapView& map, const FeatureMap& features, st
 /// What equation (5) and other correlations follow from at one pose, exactly. `features` are in cells of the map or of
 /// an overview (see in_cells_of()).
 MatchSums sums_at(const MapView& map, const FeatureMap& features, const GridPose& pose);
+/// The same at poses that lie so many whole cells from that one, in their order.
+std::vector<MatchSums> sums_beside(const MapView& map, const FeatureMap& features, const GridPose& pose,
+                                   std::span<const PlaneCell> offsets);
 /// Equation (5) of that; nullopt where it is not defined.
 std::optional<double> rho_at(const MapView& map, const FeatureMap& features, const GridPose& pose);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "core/grid/resample.hpp"
 #include "core/locate/match_poses.hpp"
@@ -42,13 +43,16 @@ bool slides(const MapView& map, const FeatureMap& frame, const GridPose& pose) {
   constexpr double kApartM = 30.0;
   constexpr int kDirections = 36;  // less than the width of a road apart
   constexpr double kNearlyAsWell = 0.8;
-  const double least = kNearlyAsWell * rho_at(map, frame, pose).value_or(0.0);
+  std::vector<PlaneCell> places{{0, 0}};
   for (int i = 0; i < kDirections; ++i) {
     const Angle direction = Angle::degrees(360.0 * i / kDirections);
-    const GridPoint beside = moved({pose.position, direction}, {kApartM, 0.0, {}}).position;
-    if (rho_at(map, frame, {beside, pose.heading}).value_or(0.0) >= least) return true;
+    const double cells = kApartM / frame.cell_m;
+    places.push_back(
+        {static_cast<int>(std::lround(cells * sin(direction))), static_cast<int>(std::lround(cells * cos(direction)))});
   }
-  return false;
+  const std::vector<MatchSums> sums = sums_beside(map, frame, pose, places);
+  const double least = kNearlyAsWell * rho(sums.front()).value_or(0.0);
+  return std::any_of(sums.begin() + 1, sums.end(), [&](const MatchSums& s) { return rho(s).value_or(0.0) >= least; });
 }
 
 Look::Outcome outcome_of(const Fix& fix, const Cluster& belief, const UtmZone& zone) {

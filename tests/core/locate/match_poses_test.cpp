@@ -57,6 +57,21 @@ TEST_F(MatchPoses, ScoreExactlyAndInBins) {
   }
 }
 
+TEST_F(MatchPoses, BesideAPoseAreThoseOfPosesThatLieSoManyCellsOff) {
+  const GridPose pose = pose_within(view_.extent, 300.0, random_);
+  const FeatureMap window = cut_out(map_, pose, 100, 100, 2.0);
+  const std::vector<PlaneCell> offsets{{0, 0}, {15, 0}, {-3, 8}, {0, -40}};
+  const std::vector<MatchSums> sums = sums_beside(view_, window, pose, offsets);
+  ASSERT_EQ(sums.size(), offsets.size());
+  for (std::size_t i = 0; i < offsets.size(); ++i) {
+    GridPose beside = pose;
+    beside.position.east_m += 2.0 * offsets[i].col;
+    beside.position.north_m -= 2.0 * offsets[i].row;
+    EXPECT_NEAR(rho(sums[i]).value(), rho_at(view_, window, beside).value(), 1e-6) << i;
+    EXPECT_EQ(sums[i].n, sums_at(view_, window, beside).n) << i;
+  }
+}
+
 /// Equation (5) with the feature map looked up below the middle of each cell of the map.
 MatchSums by_brute_force(const RoadGrid& map, const FeatureMap& features, const GridPose& pose) {
   MatchSums sums;

@@ -7,10 +7,10 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <thread>
 #include <utility>
 
 #include "core/units/memory.hpp"
+#include "core/units/parallel_for.hpp"
 #include "server/api/problem.hpp"
 #include "server/failure_log.hpp"
 #include "server/maps/picture_cache.hpp"
@@ -114,7 +114,7 @@ int Application::start() {
   const int port = parts_->server.start();
   parts_->maps.watch(parts_->configuration.watch_interval, [this] {
     tidy(parts_->tracks);
-    give_back_freed_memory_beyond(kMostFreed * std::max(2U, std::thread::hardware_concurrency()));
+    give_back_freed_memory_beyond(kMostFreed * static_cast<std::size_t>(std::max(2, processors())));
   });
   if (const auto problem = parts_->tracks.problem()) spdlog::warn("tracks cannot be stored: {}", *problem);
   spdlog::info("detector: {}", parts_->detectors.describe());

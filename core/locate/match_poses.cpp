@@ -83,10 +83,9 @@ std::vector<MatchSums> sums_beside(const MapView& map, const FeatureMap& feature
   const PackedFootprint footprint = footprint_at(features, pose.heading,
                                                  {pose.position.east_m / features.cell_m - cell.col - 0.5,
                                                   -pose.position.north_m / features.cell_m - cell.row - 0.5});
-  int reach = footprint.reach();
-  for (const PlaneCell& offset : offsets) {
-    reach = std::max(reach, footprint.reach() + std::max(std::abs(offset.col), std::abs(offset.row)));
-  }
+  int farthest = 0;
+  for (const PlaneCell& offset : offsets) farthest = std::max({farthest, std::abs(offset.col), std::abs(offset.row)});
+  const int reach = footprint.reach() + farthest;
   const GridGeometry window{features.cell_m, {cell.col - reach, cell.row - reach}, 2 * reach + 1, 2 * reach + 1};
   const MapPlane plane(map.read(window).cells);
   std::vector<PlaneCell> places;

@@ -5,13 +5,13 @@
 
 namespace roadfix {
 
-/// A vehicle that moved so far has to see something else; a hovering simulator draws the same picture again and again,
-/// while its odometry may jitter.
+/// From here on a movement counts: a hovering simulator draws the same picture again and again, while its odometry may
+/// jitter.
 inline constexpr double kMovedM = 1.0;
-/// So has one that has turned by half a degree.
+/// Whether a vehicle that moved or turned so far has to see something else.
 bool has_moved(double moved_m, double turned_rad);
 
-bool shows_road(const FeatureMap& features);
+bool has_road_cell(const FeatureMap& features);
 
 /// Whether two pictures are the same to the last cell. False without any road: one wood looks like the next.
 bool is_same_view(const FeatureMap& a, const FeatureMap& b);

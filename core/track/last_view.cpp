@@ -114,7 +114,7 @@ View LastView::take_in(const FeatureMap& features, const std::optional<SentPictu
     const View view = compared(picture->sketch, features.side_m());
     if (view != View::kNew) return view;
   }
-  if (!shows_road(features)) {
+  if (!has_road_cell(features)) {
     earlier.clear();
     stands_still = false;
     return View::kNew;

@@ -74,6 +74,7 @@ void Tracker::require_possible(const TrackerState& before, const StepInput& step
   assert(!step.odometry || !(std::abs(step.odometry->turn.radians()) > std::numbers::pi));
   require_in_order(before, step);
   require_possible_speed(before, step);
+  // It throws where they are none.
   if (step.odometry) OdometryMotion(*step.odometry, step.covariance.value_or(OdometryCovariance{}));
 }
 

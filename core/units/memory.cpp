@@ -8,7 +8,8 @@
 
 #include <algorithm>
 #include <fstream>
-#include <thread>
+
+#include "core/units/parallel_for.hpp"
 #endif
 
 namespace roadfix {
@@ -36,7 +37,7 @@ void keep_freed_memory() {
   mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // larger blocks are mapped one by one; glibc allows no more
   mallopt(M_TRIM_THRESHOLD, 64 * kMiB);
   // Each of them holds what its threads have freed: glibc would make eight for each processor.
-  mallopt(M_ARENA_MAX, static_cast<int>(std::max(2U, std::thread::hardware_concurrency())));
+  mallopt(M_ARENA_MAX, std::max(2, processors()));
 #endif
 }
 
@@ -48,7 +49,7 @@ void give_back_freed_memory() {
 
 void give_back_freed_memory_beyond([[maybe_unused]] std::size_t bytes) {
 #if defined(__GLIBC__)
-  if (freed_bytes() > bytes) malloc_trim(0);
+  if (freed_bytes() > bytes) give_back_freed_memory();
 #endif
 }
 

@@ -6,11 +6,11 @@
 #include <cassert>
 #include <cmath>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "core/grid/resample.hpp"
 #include "core/units/error.hpp"
+#include "core/units/parallel_for.hpp"
 #include "tiles/store/file_identity.hpp"
 #include "tiles/store/map_error.hpp"
 #include "tiles/store/map_file.hpp"
@@ -30,8 +30,8 @@ using sqlite::Transaction;
 
 /// More are closed after use: each holds a descriptor and up to 2 MB of pages for as long as the map is served.
 std::size_t most_idle_channels() {
-  static const std::size_t processors = std::thread::hardware_concurrency();
-  return std::max<std::size_t>(4, processors);
+  static const auto most = static_cast<std::size_t>(std::max(4, processors()));
+  return most;
 }
 
 /// A connection with its prepared query serves one thread at a time.

@@ -2,25 +2,27 @@
 
 #include <gtest/gtest.h>
 
+#include <string_view>
+
+#include "tests/support/ascii_map.hpp"
+
 namespace roadfix {
 namespace {
 
-FeatureMap road_at(int col) {
-  CellArray cells(20, 20, kNoRoad);
-  for (int row = 0; row < 20; ++row) cells.at(col, row) = kRoad;
-  return FeatureMap::centred(cells, 2.0);
-}
+FeatureMap seen(std::string_view picture) { return FeatureMap::centred(testing::from_ascii(picture), 2.0); }
+
+const FeatureMap kRoadAcross = seen("...\n###\n...");
 
 TEST(SameView, IsOneOfTheSameRoadsInCellsOfTheSameSize) {
-  EXPECT_TRUE(is_same_view(road_at(3), road_at(3)));
-  EXPECT_FALSE(is_same_view(road_at(3), road_at(4)));
-  FeatureMap larger = road_at(3);
+  EXPECT_TRUE(is_same_view(kRoadAcross, kRoadAcross));
+  EXPECT_FALSE(is_same_view(kRoadAcross, seen("###\n...\n...")));
+  FeatureMap larger = kRoadAcross;
   larger.cell_m = 3.0;
-  EXPECT_FALSE(is_same_view(road_at(3), larger));
+  EXPECT_FALSE(is_same_view(kRoadAcross, larger));
 }
 
 TEST(SameView, IsNoneOfTwoWoods) {
-  const FeatureMap wood = FeatureMap::centred(CellArray(20, 20, kNoRoad), 2.0);
+  const FeatureMap wood = seen("...\n...\n...");
   EXPECT_FALSE(is_same_view(wood, wood));
 }
 

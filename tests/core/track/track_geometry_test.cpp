@@ -108,6 +108,31 @@ TEST_F(TrackGeometry, TellsAClusterOnTheEarthWithTheErrorsOfMapAndNadirInTheSize
   EXPECT_NEAR(told.scale_sigma, (std::exp(0.12) - std::exp(0.08)) / 2.0, 1e-4);
 }
 
+TEST_F(TrackGeometry, TellsTheCircleOfNinetyFivePercentWithTheErrorOfTheMapsRegistrationToo) {
+  Cluster cluster;
+  cluster.mean.position = place_;
+  cluster.covariance = {{{9.0, 0.0, 0.0}, {0.0, 9.0, 0.0}, {}}};
+  cluster.radius95_m = kSigmasOf95 * 3.0;
+  view_.registration_sigma_m = [](GridPoint) { return 0.0; };
+  EXPECT_NEAR(to_geographic(view_, cluster, 0.0).radius95_m, kSigmasOf95 * 3.0, 1e-9);
+  view_.registration_sigma_m = [](GridPoint) { return 4.0; };
+  const TrackCluster told = to_geographic(view_, cluster, 0.0);
+  EXPECT_NEAR(told.ellipse.sigma_m[0], 5.0, 1e-9);
+  EXPECT_NEAR(told.radius95_m, kSigmasOf95 * 5.0, 1e-9);
+}
+
+TEST_F(TrackGeometry, TellsTheErrorOfTheNadirOnBothAxes) {
+  view_.registration_sigma_m = [](GridPoint) { return 0.0; };
+  Cluster cluster;
+  cluster.mean.position = place_;
+  cluster.covariance = {{{81.0, 0.0, 0.0}, {0.0, 25.0, 0.0}, {}}};
+  cluster.radius95_m = kSigmasOf95 * 9.0;
+  const TrackCluster told = to_geographic(view_, cluster, 12.0);
+  EXPECT_NEAR(told.ellipse.sigma_m[0], 15.0, 1e-9);
+  EXPECT_NEAR(told.ellipse.sigma_m[1], 13.0, 1e-9);
+  EXPECT_NEAR(told.radius95_m, kSigmasOf95 * 15.0, 1e-9);
+}
+
 TEST_F(TrackGeometry, GivesTheHeadingsNearAPoseAsTheyAreOnTheEarth) {
   const auto prior = prior_near(view_, {place_, Angle::degrees(60.0)}, 80.0, Angle::degrees(15.0));
   ASSERT_TRUE(prior && prior->heading && prior->circle);

@@ -19,7 +19,7 @@ constexpr std::size_t kBlock = PackedFootprint::kAlignment;
 
 #if HWY_TARGET == HWY_SCALAR  // processors without the byte operations (SSE2 only)
 
-template <std::size_t kPlaces>
+template <std::size_t kPlaces, bool kAllObserved>
 void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
             const PlaneCell* cells, IntegerSums* out) {
   for (std::size_t k = 0; k < kPlaces; ++k) {
@@ -117,8 +117,8 @@ struct Hidden {
 };
 
 /// Several places at once share the footprint's values, and the processor need not wait for a sum of one before it adds
-/// to that of another.
-template <std::size_t kPlaces>
+/// to that of another. Where all of the map is observed, nothing hidden needs to be looked for.
+template <std::size_t kPlaces, bool kAllObserved>
 HWY_ATTR void add_up(const MapPlane& map, const PackedFootprint& footprint, std::span<const std::ptrdiff_t> blocks,
                      const PlaneCell* cells, IntegerSums* out) {
   const Bytes unobserved = hn::Set(kBytes, kUnobserved);
@@ -144,9 +144,9 @@ HWY_ATTR void add_up(const MapPlane& map, const PackedFootprint& footprint, std:
         Bytes highest = hn::Zero(kBytes);
         for (std::size_t k = 0; k < kPlaces; ++k) {
           m[k] = hn::And(hn::LoadU(kBytes, nadir[k] + blocks[block] + i), mask);
-          highest = hn::Max(highest, m[k]);
+          if constexpr (!kAllObserved) highest = hn::Max(highest, m[k]);
         }
-        if (!hn::AllFalse(kBytes, hn::Eq(highest, unobserved))) [[unlikely]] {
+        if (!kAllObserved && !hn::AllFalse(kBytes, hn::Eq(highest, unobserved))) [[unlikely]] {
           for (std::size_t k = 0; k < kPlaces; ++k) {
             const Bytes unseen = hn::VecFromMask(kBytes, hn::Eq(m[k], unobserved));
             hidden[k].add(unseen, values);
@@ -209,12 +209,25 @@ void products_at(const MapPlane& map, const PackedFootprint& footprint, std::spa
   for (; i < places.size(); ++i) add_products<1>(map, footprint, blocks, &places[i], &sums[i]);
 }
 
-void sums_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
+template <bool kAllObserved>
+void sums_on(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
              std::span<IntegerSums> sums) {
+  constexpr std::size_t kAtOnce = kAllObserved ? 4 : 2;
   const std::vector<std::ptrdiff_t> blocks = footprint.block_offsets(map.stride());
   std::size_t i = 0;
-  for (; i + 2 <= places.size(); i += 2) add_up<2>(map, footprint, blocks, &places[i], &sums[i]);
-  for (; i < places.size(); ++i) add_up<1>(map, footprint, blocks, &places[i], &sums[i]);
+  for (; i + kAtOnce <= places.size(); i += kAtOnce) {
+    add_up<kAtOnce, kAllObserved>(map, footprint, blocks, &places[i], &sums[i]);
+  }
+  for (; i < places.size(); ++i) add_up<1, kAllObserved>(map, footprint, blocks, &places[i], &sums[i]);
+}
+
+void sums_at(const MapPlane& map, const PackedFootprint& footprint, std::span<const PlaneCell> places,
+             std::span<IntegerSums> sums) {
+  if (map.all_observed()) {
+    sums_on<true>(map, footprint, places, sums);
+  } else {
+    sums_on<false>(map, footprint, places, sums);
+  }
 }
 
 const char* target_name() { return hwy::TargetName(HWY_TARGET); }

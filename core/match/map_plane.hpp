@@ -15,6 +15,7 @@ class MapPlane {
 
   int cols() const { return cols_; }
   int rows() const { return rows_; }
+  bool all_observed() const { return all_observed_; }
   std::size_t bytes() const { return bytes_.size(); }
   std::ptrdiff_t stride() const { return cols_; }
   const std::uint8_t* at(int col, int row) const { return bytes_.data() + row * stride() + col; }
@@ -25,6 +26,7 @@ class MapPlane {
  private:
   int cols_;
   int rows_;
+  bool all_observed_;
   std::vector<std::uint8_t> bytes_;
 };
 

@@ -78,7 +78,7 @@ TEST_P(KernelOnEachTarget, AgreesWithTheDefinitionForRandomSizesPlacesAndHoles) 
   }
 }
 
-TEST_P(KernelOnEachTarget, SumsProductsAloneWhereAllOfTheMapIsObserved) {
+TEST_P(KernelOnEachTarget, SumsAllAndProductsAloneWhereAllOfTheMapIsObserved) {
   std::mt19937_64 random(8);
   const auto below = [&](int n) { return static_cast<int>(random() % static_cast<std::uint64_t>(n)); };
   for (int round = 0; round < 100; ++round) {
@@ -94,8 +94,12 @@ TEST_P(KernelOnEachTarget, SumsProductsAloneWhereAllOfTheMapIsObserved) {
     }
     std::vector<std::int64_t> products(places.size());
     product_sums(plane, footprint, places, products);
+    std::vector<MatchSums> sums(places.size());
+    match_sums(plane, footprint, places, sums);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      EXPECT_NEAR(static_cast<double>(products[i]), scalar_sums(map, features, places[i]).ml * (kRoad * kRoad), 1e-3);
+      const MatchSums expected = scalar_sums(map, features, places[i]);
+      expect_equal(sums[i], expected);
+      EXPECT_NEAR(static_cast<double>(products[i]), expected.ml * (kRoad * kRoad), 1e-3);
     }
     if (HasFailure()) FAIL() << "round " << round << " on " << kernel_target();
   }
@@ -108,10 +112,13 @@ TEST_P(KernelOnEachTarget, SumsOfAllRoadDoNotOverflow) {
   const PackedFootprint footprint(features);
   const int margin = footprint.reach();
   const PlaneCell place{cols / 2 + margin, rows / 2 + margin};
-  CellArray map(cols, rows, kRoad);
-  for (const bool hole : {false, true}) {
-    if (hole) map.at(5, 5) = kUnobserved;
-    const MapPlane plane(padded(map, margin));
+  const CellArray all_observed(cols + 2 * margin, rows + 2 * margin, kRoad);
+  const CellArray map(cols, rows, kRoad);
+  CellArray with_hole = map;
+  with_hole.at(5, 5) = kUnobserved;
+  for (const CellArray& ground : {all_observed, padded(map, margin), padded(with_hole, margin)}) {
+    const bool hole = !is_observed(ground.at(5 + margin, 5 + margin));
+    const MapPlane plane(ground);
     MatchSums sums;
     match_sums(plane, footprint, std::span(&place, 1), std::span(&sums, 1));
     const double expected = static_cast<double>(cols) * rows - (hole ? 1 : 0);

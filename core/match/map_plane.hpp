@@ -26,7 +26,7 @@ class MapPlane {
  private:
   int cols_;
   int rows_;
-  bool all_observed_;
+  bool all_observed_ = false;
   std::vector<std::uint8_t> bytes_;
 };
 

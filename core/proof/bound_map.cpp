@@ -79,7 +79,6 @@ BoundMap::BoundMap(const RoadGrid& grid, const Deadline& deadline)
       block_cols_(blocks(grid.cells.cols())),
       block_rows_(blocks(grid.cells.rows())),
       stride_(block_cols_ + 2 * kMargin + kRun),
-      all_observed_(std::ranges::all_of(grid.cells.cells(), is_observed)),
       base_(min_observed(grid.cells)),
       span_(std::max(1, max_observed(grid.cells) - base_)),
       exact_(grid.cells),

@@ -67,7 +67,7 @@ class BoundMap {
   const MapPlane& exact() const { return exact_; }
   const MapPlane& pooled(int side) const { return side == 2 ? pooled2_ : pooled4_; }
 
-  bool all_observed() const { return all_observed_; }
+  bool all_observed() const { return exact_.all_observed(); }
   std::size_t bytes() const;
 
  private:
@@ -84,7 +84,6 @@ class BoundMap {
   int block_rows_;
   static constexpr int kMargin = 4;
   std::ptrdiff_t stride_;
-  bool all_observed_;
   int base_ = 0;
   int span_ = 1;
   std::vector<std::vector<std::uint8_t>> planes_;
